@@ -65,8 +65,9 @@ void add_gyroscope_flags(CLI::App& verb, CalibrateCommand& command) {
       ->check(CLI::IsMember({"rad/s", "deg/s", "counts", "V"}));
   verb.add_option("--turntable", command.turntable,
                   "a steady rotation of a turntable about any axis, in s and deg/s, optionally "
-                  "with the standard deviation of the rate; may be repeated")
-      ->type_name("START,END,DEG_PER_S[,STD]")
+                  "with the standard deviation of the rate, or a file of such lines; may be "
+                  "repeated")
+      ->type_name("START,END,DEG_PER_S[,STD]|FILE")
       ->allow_extra_args(false);
 }
 

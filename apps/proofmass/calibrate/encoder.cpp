@@ -25,12 +25,13 @@ void expect_one_wheel(const CalibrateCommand& command) {
     throw Failure(usage, "--encoder calibrates the encoder only: omit the flags for positions");
 }
 
-// Factor that makes volts or counts accelerations: gravity is half the largest swing of an axis. The
-// fit determines the response anyway; only the priors are in m/s².
+// Factor that makes volts or counts accelerations: gravity is half the largest swing of an axis.
+// The fit determines the response anyway; only the priors are in m/s².
 double accel_per_unit(const std::vector<std::vector<double>>& axes, double gravity_mps2) {
   double swing = 0.0;
   for (const std::vector<double>& axis : axes)
-    swing = std::max(swing, quantile(axis, 0.99).value_or(0.0) - quantile(axis, 0.01).value_or(0.0));
+    swing =
+        std::max(swing, quantile(axis, 0.99).value_or(0.0) - quantile(axis, 0.01).value_or(0.0));
   return swing > 0.0 ? 2.0 * gravity_mps2 / swing : 1.0;
 }
 
@@ -103,7 +104,8 @@ void run_calibrate_encoder(const CalibrateCommand& command) {
                                     .has_index = encoder.has_index};
   for (std::size_t k = 0; k < recording.samples(); ++k)
     wheel.time_s.push_back(recording.time.at(k));
-  for (const Accelerometer& one : found) add_axes(recording, one, gravity_mps2(command.input), wheel);
+  for (const Accelerometer& one : found)
+    add_axes(recording, one, gravity_mps2(command.input), wheel);
   report.channel = encoder.name;
   report.options = {.gravity_mps2 = gravity_mps2(command.input),
                     .nonlinearity = 0.01 * command.nonlinearity_percent,

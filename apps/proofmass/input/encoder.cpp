@@ -17,7 +17,7 @@ namespace proofmass::app {
 namespace {
 
 // Usual names of an encoder's channel.
-constexpr std::array<const char*, 6> encoder_names{"encoder", "enc",     "encoder_count",
+constexpr std::array<const char*, 6> encoder_names{"encoder", "enc",   "encoder_count",
                                                    "counts",  "ticks", "angle"};
 
 const Channel& encoder_channel(const Recording& recording, const EncoderFlags& flags) {
@@ -181,9 +181,9 @@ EncoderChannel encoder_of(const Recording& recording,
                      .has_index = false,
                      .index_slips = {}};
   if (unwrapped.glitches > 0)
-    notes.push_back({Severity::warning,
-                     fmt::format("{}: {} single values contradict their neighbours: ignored",
-                                 channel.name, unwrapped.glitches)});
+    notes.push_back(
+        {Severity::warning, fmt::format("{}: {} single values contradict their neighbours: ignored",
+                                        channel.name, unwrapped.glitches)});
   std::vector<double> times = times_of(from);
   for (double& time : times) time += begin_s;
   if (!flags.index.empty()) {
@@ -192,20 +192,19 @@ EncoderChannel encoder_of(const Recording& recording,
       throw Failure(usage, fmt::format("{}: --index: no channel {}", from.source, flags.index));
     const auto pulses = index_pulses(index->values, unwrapped.angle_rad, times);
     if (pulses.empty())
-      throw Failure(bad_input, fmt::format("{}: channel {}: no index pulse", from.source,
-                                           flags.index));
+      throw Failure(bad_input,
+                    fmt::format("{}: channel {}: no index pulse", from.source, flags.index));
     for (double& angle : unwrapped.angle_rad) angle -= pulses.front().angle_rad;
     out.has_index = true;
     out.index_slips = slips_of(pulses, scale.step_rad);
   }
   constexpr double smooth_std_rad = 1e-4, stamp_std_s = 1e-6;
-  out.fixes = apart ? signal::fixes_of_edges(times, unwrapped.angle_rad, scale.step_rad, stamp_std_s)
-                    : signal::fixes_of_samples(times, unwrapped.angle_rad, scale.step_rad,
-                                               smooth_std_rad);
+  out.fixes =
+      apart ? signal::fixes_of_edges(times, unwrapped.angle_rad, scale.step_rad, stamp_std_s)
+            : signal::fixes_of_samples(times, unwrapped.angle_rad, scale.step_rad, smooth_std_rad);
   if (out.fixes.time_s.empty())
-    throw Failure(bad_input,
-                  fmt::format("{}: channel {}: the encoder does not move", from.source,
-                              channel.name));
+    throw Failure(bad_input, fmt::format("{}: channel {}: the encoder does not move", from.source,
+                                         channel.name));
   return out;
 }
 

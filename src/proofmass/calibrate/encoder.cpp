@@ -45,6 +45,24 @@ void divide(const std::vector<double>& turned, EncoderRows& rows) {
     rows.block.push_back(std::min(static_cast<std::size_t>(turn / each), rows.blocks - 1));
 }
 
+/// From the acceleration about a fiftieth of a turn before and after.
+void add_jerk(EncoderRows& rows) {
+  constexpr double apart_rad = rad_per_turn / 48.0;
+  const std::size_t size = rows.row.size();
+  const auto& angle = rows.shown.angle_rad;
+  rows.jerk_radps3.assign(size, 0.0);
+  std::size_t first = 0, last = 0;
+  for (std::size_t k = 0; k < size; ++k) {
+    while (first < k && std::abs(angle[k] - angle[first]) > apart_rad) ++first;
+    last = std::max(last, k);
+    while (last + 1 < size && std::abs(angle[last] - angle[k]) < apart_rad) ++last;
+    const double span_s = rows.time_s[last] - rows.time_s[first];
+    if (span_s > 0.0)
+      rows.jerk_radps3[k] =
+          (rows.shown.accel_radps2[last] - rows.shown.accel_radps2[first]) / span_s;
+  }
+}
+
 /// Turns up to each row used.
 std::vector<double> select_rows(const EncoderRecording& recording,
                                 const signal::AngleFixes& fixes,
@@ -73,6 +91,7 @@ std::vector<double> select_rows(const EncoderRecording& recording,
     rows.shown.speed_radps.push_back(speed);
     rows.shown.accel_radps2.push_back(accel);
   }
+  add_jerk(rows);
   divide(turned, rows);
   return turned;
 }
@@ -151,9 +170,10 @@ void add_notes(const EncoderRecording& recording,
         "their nonlinearity is taken as {:.2g} % at 1 g instead of {:.2g} %",
         100.0 * out.nonlinearity, 100.0 * given.nonlinearity));
   if (out.blocks < 10)
-    out.notes.push_back(fmt::format("{} turns only: the intervals are wide by Student's t with {} "
-                                    "degrees of freedom",
-                                    static_cast<int>(out.turns), static_cast<int>(out.dof)));
+    out.notes.push_back(
+        fmt::format("{} turns only: the intervals are wide by Student's t with {} "
+                    "degrees of freedom",
+                    static_cast<int>(out.turns), static_cast<int>(out.dof)));
 }
 
 /// Fits, finds the missed counts, removes them from `fixes` and fits again, until there are none.

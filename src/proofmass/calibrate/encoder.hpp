@@ -23,8 +23,8 @@ struct EncoderRecording {
   std::vector<std::vector<double>> axes;  ///< m/s², as long as time_s; NaN where missing
   std::vector<std::string> axis_names;
   std::vector<std::size_t> sensor_of;  ///< of each axis; axes of one sensor share a lever arm
-  signal::AngleFixes encoder;  ///< angle as the encoder shows it
-  double step_rad = 0.0;       ///< one count; 0: no visible steps, and no search for missed counts
+  signal::AngleFixes encoder;          ///< angle as the encoder shows it
+  double step_rad = 0.0;  ///< one count; 0: no visible steps, and no search for missed counts
   /// Slips that the index pulse shows, removed already.
   std::vector<signal::CountSlip> index_slips = {};
   bool has_index = false;  ///< angle 0 is at the index pulse
@@ -38,7 +38,7 @@ struct EncoderOptions {
   double nonlinearity = 2e-4;
   double runout_m = 30e-6;  ///< run-out of the axle, once a turn
   double radius_m = 0.3;    ///< distance of the accelerometers from the axle
-  double delay_s = 0.05;    ///< of the accelerometers after the encoder
+  double delay_s = 0.01;    ///< of the accelerometers after the encoder
 };
 
 /// Orders that are fitted. Those above the second are there because they resemble the first two.
@@ -95,10 +95,10 @@ struct EncoderCalibration {
 ///              + q ((1 + y) cos θ' − x sin θ' − (ω² r_y − α r_x)/g)
 ///              + k₂ cos 2θ + k₂' sin 2θ + k₃ cos 3θ + k₃' sin 3θ,
 ///
-/// with the encoder's angle ψ, θ' = θ − τ ω, for each accelerometer its lever arm r, and for each of
-/// its axes a bias b (a cubic of the time), the response p, q to gravity in the plane (scale, skew
-/// and mounting) and nonlinearity k. x and y are the acceleration of the axle by its run-out, ω²/g
-/// times (h₁ cos θ + h₂ sin θ) and (h₃ cos θ + h₄ sin θ).
+/// with the encoder's angle ψ, θ' = θ − τ ω, for each accelerometer its lever arm r, and for each
+/// of its axes a bias b (a cubic of the time), the response p, q to gravity in the plane (scale,
+/// skew and mounting) and nonlinearity k. x and y are the acceleration of the axle by its run-out,
+/// ω²/g times (h₁ cos θ + h₂ sin θ) and (h₃ cos θ + h₄ sin θ).
 ///
 /// - A bias displaces the circle on which gravity moves and an eccentricity does not, so that they
 ///   are separable: the eccentricity appears at twice a turn in the accelerometer's axes, the
@@ -111,7 +111,8 @@ struct EncoderCalibration {
 ///   are removed, and the fit repeated.
 ///
 /// Source: kinematics of a rigid body in a plane; for the covariance H. White, Econometrica 48
-/// (1980) 817; eccentricity of a disc once a turn, and of its warping twice: docs/methods/encoder.md.
+/// (1980) 817; eccentricity of a disc once a turn, and of its warping twice:
+/// docs/methods/encoder.md.
 ///
 /// Errors: invalid_argument (unequal lengths, no axis), too_few_samples (under 5 turns, or an
 /// encoder with fewer than 48 fixes a turn), not_observable (no axis follows gravity).

@@ -8,8 +8,8 @@
 #include "proofmass/calibrate/encoder_test_support.hpp"
 
 // Coverage of the 95 % intervals over simulated wheels with imperfections that the fit does not
-// model exactly: nonlinear accelerometers, run-out, ripple of the speed, a one-pole filter, coloured
-// noise, warm-up, quantisation of both.
+// model exactly: nonlinear accelerometers, run-out, ripple of the speed, a one-pole filter,
+// coloured noise, warm-up, quantisation of both.
 namespace proofmass::calibrate::encoder_slow_test {
 namespace {
 
@@ -59,12 +59,10 @@ struct Coverage {
       if (!one.amplitude_rad) continue;
       ++named[order];
       const double amplitude = std::hypot(c, s);
-      amplitudes[order] += amplitude > one.amplitude_95_rad[0] &&
-                                   amplitude < one.amplitude_95_rad[1]
-                               ? 1
-                               : 0;
-      const double off = std::remainder(std::atan2(-s, c) - one.phase_rad->value,
-                                        2.0 * std::numbers::pi);
+      amplitudes[order] +=
+          amplitude > one.amplitude_95_rad[0] && amplitude < one.amplitude_95_rad[1] ? 1 : 0;
+      const double off =
+          std::remainder(std::atan2(-s, c) - one.phase_rad->value, 2.0 * std::numbers::pi);
       phases[order] += std::abs(off) < (*one.phase_95_rad)[1] - one.phase_rad->value ? 1 : 0;
     }
   }
@@ -97,31 +95,31 @@ TEST_P(EncoderCoverage, IsThatStated) {
 INSTANTIATE_TEST_SUITE_P(
     Wheels,
     EncoderCoverage,
-    testing::Values(
-        Scenario{"one speed", [](SimulatedEncoder&, std::mt19937_64&) {}},
-        Scenario{"two speeds",
-                 [](SimulatedEncoder& wheel, std::mt19937_64&) {
-                   wheel.speed_radps = [](double t) {
-                     return 1.152 + 1.048 * std::clamp((t - 60.0) / 3.0, 0.0, 1.0);
-                   };
-                 }},
-        Scenario{"missed counts",
-                 [](SimulatedEncoder& wheel, std::mt19937_64& random) {
-                   wheel.missed = {{drawn(random, 20.0, 50.0), 1.0}, {80.0, -3.0}};
-                 }},
-        Scenario{"stamped edges",
-                 [](SimulatedEncoder& wheel, std::mt19937_64&) {
-                   wheel.edges = true;
-                   wheel.counts_per_turn = 512;
-                 }},
-        Scenario{"a minute, 1024 counts",
-                 [](SimulatedEncoder& wheel, std::mt19937_64&) {
-                   wheel.seconds = 60.0;
-                   wheel.counts_per_turn = 1024;
-                 }},
-        Scenario{"two sensors", [](SimulatedEncoder& wheel, std::mt19937_64&) {
-                   wheel.sensors.push_back({-wheel.sensors[0][0], -wheel.sensors[0][1], 1.0});
-                 }}));
+    testing::Values(Scenario{"one speed", [](SimulatedEncoder&, std::mt19937_64&) {}},
+                    Scenario{"two speeds",
+                             [](SimulatedEncoder& wheel, std::mt19937_64&) {
+                               wheel.speed_radps = [](double t) {
+                                 return 1.152 + 1.048 * std::clamp((t - 60.0) / 3.0, 0.0, 1.0);
+                               };
+                             }},
+                    Scenario{"missed counts",
+                             [](SimulatedEncoder& wheel, std::mt19937_64& random) {
+                               wheel.missed = {{drawn(random, 20.0, 50.0), 1.0}, {80.0, -3.0}};
+                             }},
+                    Scenario{"stamped edges",
+                             [](SimulatedEncoder& wheel, std::mt19937_64&) {
+                               wheel.edges = true;
+                               wheel.counts_per_turn = 512;
+                             }},
+                    Scenario{"a minute, 1024 counts",
+                             [](SimulatedEncoder& wheel, std::mt19937_64&) {
+                               wheel.seconds = 60.0;
+                               wheel.counts_per_turn = 1024;
+                             }},
+                    Scenario{"two sensors", [](SimulatedEncoder& wheel, std::mt19937_64&) {
+                               wheel.sensors.push_back(
+                                   {-wheel.sensors[0][0], -wheel.sensors[0][1], 1.0});
+                             }}));
 
 }  // namespace
 }  // namespace proofmass::calibrate::encoder_slow_test

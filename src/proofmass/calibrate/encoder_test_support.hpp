@@ -39,8 +39,8 @@ struct EncoderTruth {
 inline double disc_angle(const SimulatedEncoder& wheel, double angle) {
   // The disc's centre is off the axle by this part of its radius; the head sees the angle about it.
   const double towards = angle + wheel.eccentricity_phase;
-  const double seen =
-      std::atan2(-wheel.eccentricity * std::sin(towards), 1.0 - wheel.eccentricity * std::cos(towards));
+  const double seen = std::atan2(-wheel.eccentricity * std::sin(towards),
+                                 1.0 - wheel.eccentricity * std::cos(towards));
   return angle - seen + wheel.warp_rad * std::cos(2.0 * angle + wheel.warp_phase) +
          wheel.third_rad * std::cos(3.0 * angle);
 }
@@ -113,7 +113,8 @@ inline EncoderRecording simulate(const SimulatedEncoder& wheel, std::mt19937_64&
     last_count = count;
     if (step < 2) continue;
     for (std::size_t s = 0; s < wheel.sensors.size(); ++s) {
-      const auto before = point(angles[0], wheel.sensors[s]), now = point(angles[1], wheel.sensors[s]),
+      const auto before = point(angles[0], wheel.sensors[s]),
+                 now = point(angles[1], wheel.sensors[s]),
                  after = point(angles[2], wheel.sensors[s]);
       const double ax = (after[0] - 2.0 * now[0] + before[0]) / (dt * dt);
       const double ay = (after[1] - 2.0 * now[1] + before[1]) / (dt * dt) + g;
@@ -143,9 +144,8 @@ inline EncoderRecording simulate(const SimulatedEncoder& wheel, std::mt19937_64&
       counts.push_back((std::floor(disc_angle(wheel, angles[1]) / out.step_rad) - lost) *
                        out.step_rad);
   }
-  out.encoder = wheel.edges
-                    ? signal::fixes_of_edges(stamps, counts, out.step_rad, 1e-6)
-                    : signal::fixes_of_samples(out.time_s, counts, out.step_rad, 0.0);
+  out.encoder = wheel.edges ? signal::fixes_of_edges(stamps, counts, out.step_rad, 1e-6)
+                            : signal::fixes_of_samples(out.time_s, counts, out.step_rad, 0.0);
   return out;
 }
 

@@ -69,9 +69,8 @@ struct BudgetRow {
 ///
 /// The second rest shows a constant bias, v(t)/t, so that the error of the distance is ∫ (t/2 − s)
 /// a(s) ds over the noise a: a bias contributes nothing, flicker ∬ w(s) w(s') of its autocovariance
-/// −(B²/π) ln |s − s'|, for which ∬ x y ln |x − y| over the unit square about 0 is −1/16. Scale error
-/// and a change of tilt are not included, nor is the
-/// ramp. Source: as above.
+/// −(B²/π) ln |s − s'|, for which ∬ x y ln |x − y| over the unit square about 0 is −1/16. Scale
+/// error and a change of tilt are not included, nor is the ramp. Source: as above.
 [[nodiscard]] BudgetParts distance_between_rests(const BudgetNoise& noise, double t_s);
 
 /// The sensors of table 2.1: one for each grade, exact bias, no noise.

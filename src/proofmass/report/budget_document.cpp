@@ -109,10 +109,10 @@ Field part_figure(std::string key, const std::optional<sensor::PartFigure>& figu
   about.why_null = "not in the table: the datasheet has none, or in another form";
   std::optional<Fields> fields;
   if (figure)
-    fields = Fields{field::number("value", figure->value),
-                    field::choice("kind",
-                                  figure->kind == sensor::FigureKind::limit ? "limit" : "typical",
-                                  {"typical", "limit"})};
+    fields = Fields{
+        field::number("value", figure->value),
+        field::choice("kind", figure->kind == sensor::FigureKind::limit ? "limit" : "typical",
+                      {"typical", "limit"})};
   return field::object_or_null(std::move(key), std::move(fields), std::move(about));
 }
 
@@ -132,24 +132,23 @@ Fields part_error_fields(const PartRow& row, const PartError& error) {
 
 Fields part_fields(const PartRow& row) {
   const sensor::AccelerometerPart& part = *row.part;
-  return {
-      field::text("name", part.name), field::text("maker", part.maker),
-      field::choice("output", part.output == sensor::PartOutput::analog ? "analog" : "digital",
-                    {"analog", "digital"}),
-      field::text("document", part.document, {.meaning = "the datasheet of the figures"}),
-      field::magnitude("range_mps2", part.range_mps2),
-      part_figure("noise_mps2_rthz", part.noise_mps2_rthz, {.meaning = "one-sided density"}),
-      part_figure("offset_mps2", part.offset_mps2, {.meaning = "±, as delivered"}),
-      part_figure("offset_mps2_per_k", part.offset_mps2_per_k, {}),
-      part_figure("in_run_mps2", part.in_run_mps2, {.meaning = "bias instability"}),
-      part_figure("repeatability_mps2", part.repeatability_mps2, {}),
-      part_figure("scale", part.scale, {.meaning = "± fraction"}),
-      part_figure("scale_per_k", part.scale_per_k, {}),
-      part_figure("nonlinearity", part.nonlinearity, {.meaning = "± fraction of full scale"}),
-      part_figure("cross_axis", part.cross_axis, {}),
-      field::records("std_m", row.errors, [&row](const PartError& error) {
-        return part_error_fields(row, error);
-      })};
+  return {field::text("name", part.name),
+          field::text("maker", part.maker),
+          field::choice("output", part.output == sensor::PartOutput::analog ? "analog" : "digital",
+                        {"analog", "digital"}),
+          field::text("document", part.document, {.meaning = "the datasheet of the figures"}),
+          field::magnitude("range_mps2", part.range_mps2),
+          part_figure("noise_mps2_rthz", part.noise_mps2_rthz, {.meaning = "one-sided density"}),
+          part_figure("offset_mps2", part.offset_mps2, {.meaning = "±, as delivered"}),
+          part_figure("offset_mps2_per_k", part.offset_mps2_per_k, {}),
+          part_figure("in_run_mps2", part.in_run_mps2, {.meaning = "bias instability"}),
+          part_figure("repeatability_mps2", part.repeatability_mps2, {}),
+          part_figure("scale", part.scale, {.meaning = "± fraction"}),
+          part_figure("scale_per_k", part.scale_per_k, {}),
+          part_figure("nonlinearity", part.nonlinearity, {.meaning = "± fraction of full scale"}),
+          part_figure("cross_axis", part.cross_axis, {}),
+          field::records("std_m", row.errors,
+                         [&row](const PartError& error) { return part_error_fields(row, error); })};
 }
 
 // At one time, by falling error between rests.
@@ -246,16 +245,16 @@ Section error_section(const BudgetReport& report) {
 }  // namespace
 
 Document describe(const BudgetReport& report) {
-  Document document{.page = {.verb = "budget",
-                             .title = "Position error of an unaided accelerometer",
-                             .inputs = report.inputs,
-                             .conclusion = conclusion(report),
-                             .notes = report.notes},
-                    .fields = {field::records("rows", report.rows, row_fields),
-                               field::records("parts", report.parts, part_fields,
-                                              {.meaning = "with --parts"}),
-                               field::number("temperature_change_k", report.temperature_change_k,
-                                             {.meaning = "of the calibrated parts"})}};
+  Document document{
+      .page = {.verb = "budget",
+               .title = "Position error of an unaided accelerometer",
+               .inputs = report.inputs,
+               .conclusion = conclusion(report),
+               .notes = report.notes},
+      .fields = {field::records("rows", report.rows, row_fields),
+                 field::records("parts", report.parts, part_fields, {.meaning = "with --parts"}),
+                 field::number("temperature_change_k", report.temperature_change_k,
+                               {.meaning = "of the calibrated parts"})}};
   if (!report.rows.empty()) document.page.sections.push_back(error_section(report));
   if (!report.parts.empty()) document.page.sections.push_back(parts_section(report));
   document.page.sections.push_back(

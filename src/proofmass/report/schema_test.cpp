@@ -261,7 +261,11 @@ TEST(Schemas, Calibrate) {
 }
 
 TEST(Schemas, EncoderCalibration) {
-  EncoderReport seen{.inputs = {"a.csv"}, .notes = {}, .channel = "encoder", .options = {}, .fit = {},
+  EncoderReport seen{.inputs = {"a.csv"},
+                     .notes = {},
+                     .channel = "encoder",
+                     .options = {},
+                     .fit = {},
                      .index_slips = {{}}};
   seen.fit.shares = {{}};
   seen.fit.missed = {{}};

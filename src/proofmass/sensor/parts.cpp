@@ -30,17 +30,18 @@ constexpr std::array accelerometers{
                       .noise_mps2_rthz = typ(25.0 * ug),
                       .nonlinearity = typ(0.001)},
     // The density is 22.5 µg/√Hz since revision B; it was 25 before.
-    AccelerometerPart{.name = "ADXL355",
-                      .maker = "Analog Devices",
-                      .document = "Analog Devices, ADXL354/ADXL355 datasheet rev. B (2020), table 2",
-                      .range_mps2 = 2.048 * g,
-                      .noise_mps2_rthz = typ(22.5 * ug),
-                      .offset_mps2 = max(75.0 * mg),
-                      .offset_mps2_per_k = max(0.15 * mg),
-                      .scale = max(0.08),
-                      .scale_per_k = typ(1e-4),
-                      .nonlinearity = typ(0.001),
-                      .cross_axis = typ(0.01)},
+    AccelerometerPart{
+        .name = "ADXL355",
+        .maker = "Analog Devices",
+        .document = "Analog Devices, ADXL354/ADXL355 datasheet rev. B (2020), table 2",
+        .range_mps2 = 2.048 * g,
+        .noise_mps2_rthz = typ(22.5 * ug),
+        .offset_mps2 = max(75.0 * mg),
+        .offset_mps2_per_k = max(0.15 * mg),
+        .scale = max(0.08),
+        .scale_per_k = typ(1e-4),
+        .nonlinearity = typ(0.001),
+        .cross_axis = typ(0.01)},
     AccelerometerPart{.name = "ADXL357",
                       .maker = "Analog Devices",
                       .document = "Analog Devices, ADXL356/ADXL357 datasheet rev. A (2020), page 1",
@@ -224,8 +225,9 @@ View<AccelerometerPart> accelerometer_parts() {
 }
 
 const AccelerometerPart* find_part(std::string_view name) {
-  const auto found = std::ranges::find_if(
-      accelerometers, [&](const AccelerometerPart& part) { return plain(part.name) == plain(name); });
+  const auto found = std::ranges::find_if(accelerometers, [&](const AccelerometerPart& part) {
+    return plain(part.name) == plain(name);
+  });
   return found == accelerometers.end() ? nullptr : &*found;
 }
 

@@ -28,17 +28,17 @@ enum class PartOutput { analog, digital };
 struct AccelerometerPart {
   std::string_view name, maker;
   PartOutput output = PartOutput::digital;
-  std::string_view document;                         ///< the datasheet and its revision
-  double range_mps2 = 0.0;                           ///< ±
-  std::optional<PartFigure> noise_mps2_rthz = {};    ///< density, one-sided
-  std::optional<PartFigure> offset_mps2 = {};        ///< ±, as delivered
-  std::optional<PartFigure> offset_mps2_per_k = {};  ///< ±
-  std::optional<PartFigure> in_run_mps2 = {};        ///< bias instability
+  std::string_view document;                          ///< the datasheet and its revision
+  double range_mps2 = 0.0;                            ///< ±
+  std::optional<PartFigure> noise_mps2_rthz = {};     ///< density, one-sided
+  std::optional<PartFigure> offset_mps2 = {};         ///< ±, as delivered
+  std::optional<PartFigure> offset_mps2_per_k = {};   ///< ±
+  std::optional<PartFigure> in_run_mps2 = {};         ///< bias instability
   std::optional<PartFigure> repeatability_mps2 = {};  ///< ±, of the bias over the long term
-  std::optional<PartFigure> scale = {};              ///< ± fraction, as delivered
-  std::optional<PartFigure> scale_per_k = {};        ///< ± fraction
-  std::optional<PartFigure> nonlinearity = {};       ///< ± fraction of full scale
-  std::optional<PartFigure> cross_axis = {};         ///< ± fraction
+  std::optional<PartFigure> scale = {};               ///< ± fraction, as delivered
+  std::optional<PartFigure> scale_per_k = {};         ///< ± fraction
+  std::optional<PartFigure> nonlinearity = {};        ///< ± fraction of full scale
+  std::optional<PartFigure> cross_axis = {};          ///< ± fraction
 };
 
 /// Grouped by maker.

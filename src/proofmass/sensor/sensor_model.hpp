@@ -107,7 +107,7 @@ struct DriftModel {
 /// An incremental encoder on the axle: ψ = θ + Σ cos_n cos nθ + sin_n sin nθ, n = 1 (eccentricity)
 /// and 2, with the count ψ and the angle θ from where the count is 0.
 struct Encoder {
-  std::optional<Figure> counts_per_turn;  ///< 1
+  std::optional<Figure> counts_per_turn;                           ///< 1
   std::optional<Figure> once_cos, once_sin, twice_cos, twice_sin;  ///< rad
   friend bool operator==(const Encoder&, const Encoder&) = default;
 };

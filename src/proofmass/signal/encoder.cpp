@@ -68,8 +68,8 @@ Parabola parabola_at(const std::vector<FixBin>& bins,
   const double det = s[0] * m0 - s[1] * m1 + s[2] * m2;
   if (!(det > 1e-9 * s[0] * s[0] * s[0])) return {};
   const double c0 = y[0] * m0 - y[1] * m1 + y[2] * m2;
-  const double c1 = -y[0] * m1 + y[1] * (s[0] * s[4] - s[2] * s[2]) -
-                    y[2] * (s[0] * s[3] - s[1] * s[2]);
+  const double c1 =
+      -y[0] * m1 + y[1] * (s[0] * s[4] - s[2] * s[2]) - y[2] * (s[0] * s[3] - s[1] * s[2]);
   const double c2 =
       y[0] * m2 - y[1] * (s[0] * s[3] - s[1] * s[2]) + y[2] * (s[0] * s[2] - s[1] * s[1]);
   return {bins[at].angle_rad + c0 / det, c1 / det / span_s, 2.0 * c2 / det / (span_s * span_s)};
@@ -98,8 +98,9 @@ std::vector<Parabola> parabolas(const std::vector<FixBin>& bins) {
 /// (2001), chapter 4.
 double hermite(double part, double span_s, const Parabola& a, const Parabola& b) {
   const double p2 = part * part, p3 = p2 * part;
-  return (2.0 * p3 - 3.0 * p2 + 1.0) * a.angle_rad + (p3 - 2.0 * p2 + part) * span_s * a.speed_radps +
-         (3.0 * p2 - 2.0 * p3) * b.angle_rad + (p3 - p2) * span_s * b.speed_radps;
+  return (2.0 * p3 - 3.0 * p2 + 1.0) * a.angle_rad +
+         (p3 - 2.0 * p2 + part) * span_s * a.speed_radps + (3.0 * p2 - 2.0 * p3) * b.angle_rad +
+         (p3 - p2) * span_s * b.speed_radps;
 }
 
 /// Differences of the means of `width` values after and before each boundary; NaN near the ends.
@@ -133,20 +134,30 @@ struct SlipCandidate {
 
 constexpr std::size_t narrowest = 4, widest = 256;
 
+/// The most significant step that is a whole number of counts. One that is none hides what overlaps
+/// with it, since windows beside it see any part of it.
 SlipCandidate strongest(const std::vector<double>& values, double step_rad) {
-  SlipCandidate best;
+  std::vector<SlipCandidate> all;
+  const double threshold = slip_threshold(values.size());
   for (std::size_t width = narrowest; width <= std::min(widest, values.size() / 6); width *= 2) {
-    const std::vector<double> all = differences(values, width);
-    const double std_rad = scatter_of(all);
+    const std::vector<double> steps = differences(values, width);
+    const double std_rad = scatter_of(steps);
     if (!(std_rad > 0.0)) continue;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const double z = std::abs(all[i]) / std_rad;
-      const double off = std::abs(all[i] / step_rad - std::round(all[i] / step_rad)) * step_rad;
-      if (!(z > best.z) || std::abs(all[i]) < 0.5 * step_rad || off > 4.0 * std_rad) continue;
-      best = {i, width, z, all[i], std_rad};
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const double z = std::abs(steps[i]) / std_rad;
+      if (z >= threshold && std::abs(steps[i]) >= 0.5 * step_rad)
+        all.push_back({i, width, z, steps[i], std_rad});
     }
   }
-  return best;
+  std::ranges::sort(all, std::ranges::greater{}, &SlipCandidate::z);
+  std::vector<bool> hidden(values.size(), false);
+  for (const SlipCandidate& one : all) {
+    if (hidden[one.at]) continue;
+    const double counts = one.difference_rad / step_rad;
+    if (std::abs(counts - std::round(counts)) * step_rad <= 4.0 * one.std_rad) return one;
+    for (std::size_t i = one.at - one.width; i < one.at + one.width; ++i) hidden[i] = true;
+  }
+  return {};
 }
 
 /// The boundary within the window at which a step of this size leaves the least squares, and the

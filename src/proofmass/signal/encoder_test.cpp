@@ -121,7 +121,8 @@ TEST(CountSlips, AreFoundWithTheirTimeAndSize) {
   EXPECT_EQ(found[1].counts, 1);
   EXPECT_LE(found[0].start_s, 60.1);
   EXPECT_GE(found[0].end_s, 60.1);
-  EXPECT_NEAR(found[1].time_s, 120.1, 2.0);
+  EXPECT_LE(found[1].start_s, 120.1);
+  EXPECT_GE(found[1].end_s, 120.1);
 }
 
 TEST(CountSlips, AreNotFoundInNoise) {

@@ -13,6 +13,9 @@ namespace {
 namespace at = encoder;
 using Eigen::Index;
 
+/// Huber's limit, in standard deviations: knocks do not decide.
+constexpr double huber = 4.0;
+
 /// e(θ) and its first two derivatives.
 struct EncoderError {
   double value = 0.0, slope = 0.0, curve = 0.0;
@@ -77,8 +80,6 @@ AxisNormal normal_of(const EncoderRecording& recording,
   AxisNormal normal;
   normal.information.setZero();
   normal.block_gradients = Eigen::MatrixXd::Zero(at::seen, static_cast<Index>(rows.blocks));
-  // Huber's weight: knocks do not decide.
-  constexpr double huber = 4.0;
   for (std::size_t k = 0; k < rows.row.size(); ++k) {
     const double value = recording.axes[axis][rows.row[k]];
     if (std::isnan(value)) continue;
@@ -132,10 +133,49 @@ Eigen::MatrixXd scatter_of_blocks(const Normal& normal, const Eigen::MatrixXd& i
 std::vector<WheelPoint> points_of(const EncoderRows& rows, const Eigen::VectorXd& parameters) {
   std::vector<WheelPoint> points;
   points.reserve(rows.row.size());
-  for (std::size_t k = 0; k < rows.row.size(); ++k)
+  for (std::size_t k = 0; k < rows.row.size(); ++k) {
     points.push_back(true_point(parameters, rows.shown.angle_rad[k], rows.shown.speed_radps[k],
                                 rows.shown.accel_radps2[k]));
+    points.back().jerk = rows.jerk_radps3[k];
+  }
   return points;
+}
+
+/// Half the sum of squares of all residuals and of the parameters over their priors.
+double cost_of(const EncoderRecording& recording,
+               const EncoderRows& rows,
+               const EncoderOptions& options,
+               const EncoderFit& fit,
+               const Eigen::VectorXd& parameters) {
+  const at::Layout layout = at::layout_of(recording);
+  const std::vector<WheelPoint> wheel = points_of(rows, parameters);
+  double cost = parameters.cwiseQuotient(fit.prior_std).squaredNorm();
+  for (std::size_t axis = 0; axis < layout.axes; ++axis) {
+    const at::Seen seen = at::seen_by(parameters, layout, axis);
+    for (std::size_t k = 0; k < rows.row.size(); ++k) {
+      const double value = recording.axes[axis][rows.row[k]];
+      if (std::isnan(value)) continue;
+      const double off =
+          std::abs(value -
+                   predict_axis(seen, wheel[k], rows.phase[k], options.gravity_mps2).value) /
+          std::sqrt(fit.variance[axis]);
+      cost += off <= huber ? off * off : 2.0 * huber * off - huber * huber;
+    }
+  }
+  return 0.5 * cost;
+}
+
+/// The share of a step that reduces the cost, by halving.
+double shortened(const EncoderRecording& recording,
+                 const EncoderRows& rows,
+                 const EncoderOptions& options,
+                 const EncoderFit& fit,
+                 const Eigen::VectorXd& step) {
+  const double before = cost_of(recording, rows, options, fit, fit.parameters);
+  double share = 1.0;
+  for (int halving = 0; halving < 6; ++halving, share *= 0.5)
+    if (cost_of(recording, rows, options, fit, fit.parameters + share * step) <= before) break;
+  return share;
 }
 
 }  // namespace
@@ -174,13 +214,16 @@ AxisPrediction predict_axis(const at::Seen& parameters,
   AxisPrediction out;
   constexpr Index lever = at::common, own = lever + 2;
   const double p = parameters(own + at::sin), q = parameters(own + at::cos);
-  const double w2 = wheel.speed * wheel.speed, share = w2 / gravity_mps2;
-  const double accel = wheel.accel / gravity_mps2;
+  // Everything is seen a time τ later.
+  const double late_s = parameters(at::delay);
+  const double speed = wheel.speed - late_s * wheel.accel;
+  const double w2 = speed * speed, share = w2 / gravity_mps2;
+  const double accel = (wheel.accel - late_s * wheel.jerk) / gravity_mps2;
   const double cos_1 = std::cos(wheel.angle), sin_1 = std::sin(wheel.angle);
   const auto h = parameters.segment<4>(at::runout);
   const double x = share * (h(0) * cos_1 + h(1) * sin_1);
   const double y = share * (h(2) * cos_1 + h(3) * sin_1);
-  const double shown = wheel.angle - parameters(at::delay) * wheel.speed;
+  const double shown = wheel.angle - late_s * (wheel.speed - 0.5 * late_s * wheel.accel);
   const double sin_s = std::sin(shown), cos_s = std::cos(shown);
   const double along = p * sin_s + q * cos_s, across = p * cos_s - q * sin_s;
   out.by_angle = (1.0 + y) * across - x * along;
@@ -215,7 +258,8 @@ AxisPrediction predict_axis(const at::Seen& parameters,
     out.h(c + 1) =
         -sin_n * out.by_angle - by_w2 * 2.0 * w2 * n * cos_n + by_accel * w2 * n * n * sin_n;
   }
-  out.h(at::delay) = -wheel.speed * out.by_angle;
+  out.h(at::delay) = -speed * out.by_angle -
+                     by_w2 * 2.0 * speed * wheel.accel - by_accel * wheel.jerk;
   out.h(at::runout) = share * cos_1 * across;
   out.h(at::runout + 1) = share * sin_1 * across;
   out.h(at::runout + 2) = share * cos_1 * along;
@@ -226,6 +270,8 @@ AxisPrediction predict_axis(const at::Seen& parameters,
 EncoderFit fit_encoder(const EncoderRecording& recording,
                        const EncoderRows& rows,
                        const EncoderOptions& options) {
+  // The model itself is not more accurate than 0.1 mg.
+  constexpr double least_std_mps2 = 1e-3;
   const at::Layout layout = at::layout_of(recording);
   const Index n = layout.count();
   EncoderFit fit;
@@ -237,23 +283,31 @@ EncoderFit fit_encoder(const EncoderRecording& recording,
     const std::vector<WheelPoint> wheel = points_of(rows, fit.parameters);
     Normal normal{Eigen::MatrixXd::Zero(n, n),
                   Eigen::MatrixXd::Zero(n, static_cast<Index>(rows.blocks))};
+    std::vector<double> variance = fit.variance;
     for (std::size_t axis = 0; axis < layout.axes; ++axis) {
       const AxisNormal own =
           normal_of(recording, rows, wheel, at::seen_by(fit.parameters, layout, axis), axis,
                     fit.variance[axis], options.gravity_mps2);
       add_axis(own, layout, axis, normal);
       if (own.count > 0)
-        fit.variance[axis] = std::max(own.squares / static_cast<double>(own.count), 1e-18);
+        variance[axis] =
+            std::max(own.squares / static_cast<double>(own.count), square(least_std_mps2));
     }
     const Eigen::VectorXd precision = fit.prior_std.array().square().inverse();
     Eigen::MatrixXd information = normal.information;
     information.diagonal() += precision;
     fit.inverse = positive_inverse(information);
-    const Eigen::VectorXd step =
-        fit.inverse * (normal.block_gradients.rowwise().sum() - precision.cwiseProduct(fit.parameters));
-    fit.parameters += step;
+    const Eigen::VectorXd step = fit.inverse * (normal.block_gradients.rowwise().sum() -
+                                                precision.cwiseProduct(fit.parameters));
     fit.type_a = scatter_of_blocks(normal, fit.inverse);
-    fit.converged = fit.iterations > 2 && step.head<encoder_parameters>().norm() < 1e-8;
+    const double share = shortened(recording, rows, options, fit, step);
+    fit.parameters += share * step;
+    bool settled = fit.iterations > 2;
+    for (std::size_t axis = 0; axis < layout.axes; ++axis)
+      settled = settled && std::abs(variance[axis] / fit.variance[axis] - 1.0) < 0.02;
+    fit.variance = std::move(variance);
+    const double std_rad = std::sqrt(fit.inverse.diagonal().head<encoder_parameters>().sum());
+    fit.converged = settled && step.head<encoder_parameters>().norm() < 1e-2 * std_rad;
   }
   return fit;
 }
@@ -279,8 +333,9 @@ EncoderOffsets offsets_of(const EncoderRecording& recording,
     out.fitted_rad.push_back(fitted / n);
   };
   for (std::size_t k = 0; k < rows.row.size(); ++k) {
-    const WheelPoint wheel = true_point(fit.parameters, rows.shown.angle_rad[k],
-                                        rows.shown.speed_radps[k], rows.shown.accel_radps2[k]);
+    WheelPoint wheel = true_point(fit.parameters, rows.shown.angle_rad[k],
+                                  rows.shown.speed_radps[k], rows.shown.accel_radps2[k]);
+    wheel.jerk = rows.jerk_radps3[k];
     if (count == 0 || std::abs(wheel.angle - start_rad) > width_rad) {
       close();
       start_rad = wheel.angle;
@@ -290,8 +345,7 @@ EncoderOffsets offsets_of(const EncoderRecording& recording,
     for (std::size_t axis = 0; axis < recording.axes.size(); ++axis) {
       const double value = recording.axes[axis][rows.row[k]];
       if (std::isnan(value)) continue;
-      const AxisPrediction predicted =
-          predict_axis(seen[axis], wheel, rows.phase[k], gravity_mps2);
+      const AxisPrediction predicted = predict_axis(seen[axis], wheel, rows.phase[k], gravity_mps2);
       // θ by the accelerometers is larger by (z − prediction)/(∂z/∂θ), ψ − θ smaller.
       sum -= predicted.by_angle * (value - predicted.value) / fit.variance[axis];
       weight += square(predicted.by_angle) / fit.variance[axis];

@@ -34,7 +34,9 @@ struct Layout {
 
 using Seen = Eigen::Matrix<double, seen, 1>;
 /// The parameters that an axis sees.
-[[nodiscard]] Seen seen_by(const Eigen::VectorXd& parameters, const Layout& layout, std::size_t axis);
+[[nodiscard]] Seen seen_by(const Eigen::VectorXd& parameters,
+                           const Layout& layout,
+                           std::size_t axis);
 }  // namespace encoder
 
 /// Rows of the recording in which the wheel turns, with the motion that the encoder shows there.
@@ -42,14 +44,15 @@ struct EncoderRows {
   std::vector<std::size_t> row;
   std::vector<double> time_s, phase;  ///< phase: −1 … 1 over the recording
   signal::AngleMotion shown;
+  std::vector<double> jerk_radps3;
   std::vector<std::size_t> block;  ///< of whole turns
   std::size_t blocks = 0;
 };
 
 struct EncoderFit {
   Eigen::VectorXd parameters, prior_std;
-  Eigen::MatrixXd inverse;     ///< H⁻¹
-  Eigen::MatrixXd type_a;      ///< H⁻¹ M H⁻¹
+  Eigen::MatrixXd inverse;       ///< H⁻¹
+  Eigen::MatrixXd type_a;        ///< H⁻¹ M H⁻¹
   std::vector<double> variance;  ///< of each axis
   int iterations = 0;
   bool converged = false;
@@ -57,7 +60,7 @@ struct EncoderFit {
 
 /// The wheel's motion, from that of the encoder and its errors.
 struct WheelPoint {
-  double angle = 0.0, speed = 0.0, accel = 0.0;
+  double angle = 0.0, speed = 0.0, accel = 0.0, jerk = 0.0;
 };
 [[nodiscard]] WheelPoint true_point(const Eigen::VectorXd& parameters,
                                     double shown_rad,

@@ -39,8 +39,7 @@ std::vector<Index> levers(const at::Layout& layout) {
 EncoderShare share(std::string source, bool type_a, const Eigen::VectorXd& variance) {
   EncoderShare out{std::move(source), type_a, {}};
   for (std::size_t order = 0; order < 2; ++order)
-    out.std_rad[order] =
-        std::sqrt(0.5 * variance.segment<2>(2 * static_cast<Index>(order)).sum());
+    out.std_rad[order] = std::sqrt(0.5 * variance.segment<2>(2 * static_cast<Index>(order)).sum());
   return out;
 }
 
@@ -52,7 +51,8 @@ double effective_dof(double type_a, double total, double dof) {
 void add_polar(const Eigen::Matrix2d& cov, double factor, EncoderHarmonic& harmonic) {
   const Eigen::Vector2d v(harmonic.cos_rad.value, harmonic.sin_rad.value);
   const double length = v.norm();
-  const Eigen::Vector2d out = length > 0.0 ? Eigen::Vector2d(v / length) : Eigen::Vector2d(1.0, 0.0);
+  const Eigen::Vector2d out =
+      length > 0.0 ? Eigen::Vector2d(v / length) : Eigen::Vector2d(1.0, 0.0);
   const Eigen::Vector2d along(-out(1), out(0));
   const double radial = std::sqrt(out.dot(cov * out)), across = std::sqrt(along.dot(cov * along));
   if (!(harmonic.chance_p < 0.01)) {
@@ -77,18 +77,15 @@ void add_encoder_results(const EncoderRecording& recording,
                          EncoderCalibration& out) {
   const at::Layout layout = at::layout_of(recording);
   const Eigen::VectorXd noise = fit.type_a.diagonal().head<encoder_parameters>();
-  out.shares = {share("noise and quantisation", true, noise),
-                share("accelerometers' nonlinearity", false,
-                      prior_share(fit, nonlinear_ones(layout))),
-                share("run-out of the axle", false,
-                      prior_share(fit, {at::runout, at::runout + 1, at::runout + 2,
-                                        at::runout + 3})),
-                share("accelerometers' distance from the axle", false,
-                      prior_share(fit, levers(layout))),
-                share("accelerometers' delay", false, prior_share(fit, {at::delay}))};
+  out.shares = {
+      share("noise and quantisation", true, noise),
+      share("accelerometers' nonlinearity", false, prior_share(fit, nonlinear_ones(layout))),
+      share("run-out of the axle", false,
+            prior_share(fit, {at::runout, at::runout + 1, at::runout + 2, at::runout + 3})),
+      share("accelerometers' distance from the axle", false, prior_share(fit, levers(layout))),
+      share("accelerometers' delay", false, prior_share(fit, {at::delay}))};
   const Eigen::VectorXd precision = fit.prior_std.array().square().inverse();
-  const Eigen::MatrixXd cov =
-      fit.type_a + fit.inverse * precision.asDiagonal() * fit.inverse;
+  const Eigen::MatrixXd cov = fit.type_a + fit.inverse * precision.asDiagonal() * fit.inverse;
   for (std::size_t order = 0; order < encoder_orders; ++order) {
     EncoderHarmonic& harmonic = out.harmonics[order];
     const Index c = at::errors + 2 * static_cast<Index>(order);
@@ -106,8 +103,7 @@ void add_encoder_results(const EncoderRecording& recording,
   }
   out.covariance = cov.topLeftCorner<4, 4>();
   out.delay_s = {fit.parameters(at::delay), std::sqrt(cov(at::delay, at::delay))};
-  for (const double variance : fit.variance)
-    out.residual_rms_mps2.push_back(std::sqrt(variance));
+  for (const double variance : fit.variance) out.residual_rms_mps2.push_back(std::sqrt(variance));
   out.axis_names = recording.axis_names;
 }
 

@@ -18,23 +18,22 @@ constexpr const char* not_seen =
     "not distinguishable from zero: amplitude_95_rad has an upper bound";
 
 Fields harmonic_fields(const EncoderHarmonic& one) {
-  return {
-      field::count("per_turn", static_cast<std::size_t>(one.per_turn),
-                   {.meaning = "cycles a turn; 1 is eccentricity"}),
-      field::measured("amplitude", one.amplitude_rad, "rad",
-                      {.meaning = "A in A cos(n theta + phase), shown less true angle",
-                       .why_null = not_seen}),
-      field::interval("amplitude_95_rad", one.amplitude_95_rad),
-      field::measured("phase", one.phase_rad, "rad",
-                      {.meaning = "at the encoder's zero: its index pulse, or count 0",
-                       .why_null = not_seen}),
-      field::interval("phase_95_rad", one.phase_95_rad, {.why_null = not_seen}),
-      field::measured("cos", one.cos_rad, "rad"),
-      field::measured("sin", one.sin_rad, "rad"),
-      field::magnitude("half_width_95_rad", one.half_width_95_rad,
-                       {.meaning = "of the 95 % intervals of cos and sin"}),
-      field::probability("chance_p", one.chance_p,
-                         {.meaning = "probability of such values without this error"})};
+  return {field::count("per_turn", static_cast<std::size_t>(one.per_turn),
+                       {.meaning = "cycles a turn; 1 is eccentricity"}),
+          field::measured("amplitude", one.amplitude_rad, "rad",
+                          {.meaning = "A in A cos(n theta + phase), shown less true angle",
+                           .why_null = not_seen}),
+          field::interval("amplitude_95_rad", one.amplitude_95_rad),
+          field::measured("phase", one.phase_rad, "rad",
+                          {.meaning = "at the encoder's zero: its index pulse, or count 0",
+                           .why_null = not_seen}),
+          field::interval("phase_95_rad", one.phase_95_rad, {.why_null = not_seen}),
+          field::measured("cos", one.cos_rad, "rad"),
+          field::measured("sin", one.sin_rad, "rad"),
+          field::magnitude("half_width_95_rad", one.half_width_95_rad,
+                           {.meaning = "of the 95 % intervals of cos and sin"}),
+          field::probability("chance_p", one.chance_p,
+                             {.meaning = "probability of such values without this error"})};
 }
 
 struct NamedSlip {
@@ -51,13 +50,14 @@ std::vector<NamedSlip> slips_in(const EncoderReport& report) {
 }
 
 Fields slip_fields(const NamedSlip& one) {
-  return {field::number("time_s", one.slip.time_s),
-          field::interval("interval_95_s", std::array{one.slip.start_s, one.slip.end_s}),
-          field::integer("counts", one.slip.counts,
-                         {.meaning = "change of the count; negative if counts were missed forwards"}),
-          field::choice("by", one.by, {"gravity", "index"},
-                        {.meaning = "what shows it: the accelerometers, whose slips are removed "
-                                    "before the fit, or two index pulses"})};
+  return {
+      field::number("time_s", one.slip.time_s),
+      field::interval("interval_95_s", std::array{one.slip.start_s, one.slip.end_s}),
+      field::integer("counts", one.slip.counts,
+                     {.meaning = "change of the count; negative if counts were missed forwards"}),
+      field::choice("by", one.by, {"gravity", "index"},
+                    {.meaning = "what shows it: the accelerometers, whose slips are removed "
+                                "before the fit, or two index pulses"})};
 }
 
 Fields share_fields(const calibrate::EncoderShare& one) {
@@ -87,9 +87,10 @@ Fields encoder_fields(const EncoderReport& report) {
       field::magnitude("resolution_rad", step,
                        {.meaning = "one count",
                         .why_null = "the angle has no visible steps: give --counts-per-turn"}),
-      field::records("harmonics", fit.harmonics, harmonic_fields,
-                     {.meaning = "errors of the encoder; the orders 3 and 4 are fitted because they "
-                                 "resemble the first two"}),
+      field::records(
+          "harmonics", fit.harmonics, harmonic_fields,
+          {.meaning = "errors of the encoder; the orders 3 and 4 are fitted because they "
+                      "resemble the first two"}),
       field::fixed_list("covariance", std::move(rows),
                         {.meaning = "of cos and sin once a turn, cos and sin twice a turn, rad^2"}),
       field::records("missed_counts", slips_in(report), slip_fields),
@@ -107,9 +108,11 @@ Fields encoder_fields(const EncoderReport& report) {
       field::magnitude("turns", fit.turns, {.meaning = "sum over both directions"}),
       field::magnitude("speed_min_radps", fit.speed_min_radps),
       field::magnitude("speed_max_radps", fit.speed_max_radps),
-      field::count("samples", fit.samples), field::count("blocks", fit.blocks),
+      field::count("samples", fit.samples),
+      field::count("blocks", fit.blocks),
       field::magnitude("dof", fit.dof, {.meaning = "of type A"}),
-      field::flag("converged", fit.converged), field::notes(report.notes)};
+      field::flag("converged", fit.converged),
+      field::notes(report.notes)};
 }
 
 std::string order_words(int per_turn) {
@@ -125,11 +128,11 @@ std::string amplitude_words(const EncoderHarmonic& one) {
 std::string conclusion(const EncoderReport& report) {
   const EncoderCalibration& fit = report.fit;
   const EncoderHarmonic& once = fit.harmonics[0];
-  std::string text = fmt::format("{} turns: eccentricity {}", fixed(fit.turns, 1),
-                                 once.amplitude_rad
-                                     ? with_std(*scaled(once.amplitude_rad, 100.0), "%") + ", " +
-                                           amplitude_words(once)
-                                     : amplitude_words(once));
+  std::string text = fmt::format(
+      "{} turns: eccentricity {}", fixed(fit.turns, 1),
+      once.amplitude_rad
+          ? with_std(*scaled(once.amplitude_rad, 100.0), "%") + ", " + amplitude_words(once)
+          : amplitude_words(once));
   text += fmt::format("; twice a turn {}.", amplitude_words(fit.harmonics[1]));
   const std::size_t slips = fit.missed.size();
   if (fit.step_rad > 0.0)
@@ -160,10 +163,10 @@ Table slips_table(const EncoderReport& report) {
   Table table{"Missed counts", {"Time", "95 %", "Counts", "By"}, {}};
   table.long_list = true;
   for (const NamedSlip& one : slips_in(report))
-    table.rows.push_back({fixed(one.slip.time_s, 3) + " s",
-                          fmt::format("{} to {} s", fixed(one.slip.start_s, 3),
-                                      fixed(one.slip.end_s, 3)),
-                          fmt::format("{:+d}", one.slip.counts), one.by});
+    table.rows.push_back(
+        {fixed(one.slip.time_s, 3) + " s",
+         fmt::format("{} to {} s", fixed(one.slip.start_s, 3), fixed(one.slip.end_s, 3)),
+         fmt::format("{:+d}", one.slip.counts), one.by});
   return table;
 }
 
@@ -186,9 +189,9 @@ std::vector<std::string> facts(const EncoderReport& report) {
                               significant(1e3 * fit.step_rad, 3),
                               fixed(rad_per_turn / fit.step_rad, 0)));
   if (fit.detectable_counts)
-    out.push_back(fmt::format("Fewer than {} missed at once would not be found.",
-                              count_words(static_cast<std::size_t>(*fit.detectable_counts),
-                                          "count")));
+    out.push_back(
+        fmt::format("Fewer than {} missed at once would not be found.",
+                    count_words(static_cast<std::size_t>(*fit.detectable_counts), "count")));
   out.push_back(fmt::format("Speed {} to {} rpm.",
                             significant(fit.speed_min_radps / radps_per_rpm, 3),
                             significant(fit.speed_max_radps / radps_per_rpm, 3)));
@@ -198,8 +201,9 @@ std::vector<std::string> facts(const EncoderReport& report) {
 Figure error_figure(const EncoderReport& report) {
   const EncoderCalibration& fit = report.fit;
   Figure figure{.title = "Error of the encoder against the wheel's angle",
-                .description = "Encoder less gravity's direction in sixteenths of a turn, and the "
-                               "fitted error.",
+                .description =
+                    "Encoder less gravity's direction in sixteenths of a turn, and the "
+                    "fitted error.",
                 .x = {.label = "Angle (°)", .min = 0.0, .max = 360.0},
                 .y = {.label = "Encoder − gravity (mrad)"}};
   Curve points{"encoder − gravity", {}, {}, Ink::grey, Mark::points};
@@ -229,8 +233,9 @@ Figure residual_figure(const EncoderReport& report) {
     points.y.push_back(1e3 * (fit.offset_rad[k] - fit.fitted_rad[k]));
   }
   return {.title = "Residual against time",
-          .description = "After removal of the missed counts; a step would be one that was not "
-                         "found.",
+          .description =
+              "After removal of the missed counts; a step would be one that was not "
+              "found.",
           .x = {.label = "Time (s)"},
           .y = {.label = "Residual (mrad)"},
           .curves = {std::move(points)},
@@ -261,12 +266,12 @@ Document describe(const EncoderReport& report) {
                              .notes = report.notes},
                     .fields = encoder_fields(report)};
   document.bad = !report.fit.converged;
-  Section errors{.heading = "Errors of the encoder",
-                 .points = facts(report),
-                 .tables = {harmonics_table(report)},
-                 .figures = {[&] { return error_figure(report); },
-                             [&] { return residual_figure(report); }},
-                 .on_terminal = true};
+  Section errors{
+      .heading = "Errors of the encoder",
+      .points = facts(report),
+      .tables = {harmonics_table(report)},
+      .figures = {[&] { return error_figure(report); }, [&] { return residual_figure(report); }},
+      .on_terminal = true};
   Table slips = slips_table(report);
   if (!slips.rows.empty()) errors.tables.push_back(std::move(slips));
   document.page.sections = {
