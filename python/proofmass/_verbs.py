@@ -218,6 +218,15 @@ def calibrate(
     gyro_file: Optional[Path] = None,
     rate_unit: Optional[str] = None,
     turntable: Union[str, Sequence[str], None] = None,
+    encoder: bool = False,
+    encoder_channel: Optional[str] = None,
+    counts_per_turn: Optional[float] = None,
+    wrap: Optional[float] = None,
+    index: Optional[str] = None,
+    edges: Optional[Path] = None,
+    nonlinearity: Optional[float] = None,
+    runout: Optional[float] = None,
+    radius: Optional[float] = None,
     name: Optional[str] = None,
     serial: Optional[str] = None,
     date: Optional[str] = None,
@@ -284,6 +293,26 @@ def calibrate(
         Unit of the gyroscope where its headings have none: "rad/s" (default), "deg/s", "counts", "V".
     turntable : str or list of str, optional
         A steady rotation, "START,END,DEG_PER_S[,STD]"; may be repeated.
+    encoder : bool
+        Calibrate the encoder of a wheel by the accelerometers on it, instead of an accelerometer by
+        positions.
+    encoder_channel : str, optional
+        The encoder's counts or angle (default: the channel encoder, counts, ticks or angle).
+    counts_per_turn : float, optional
+        Quadrature counts of one turn of the encoder.
+    wrap : float, optional
+        The count starts again after so many, such as 65536 (default: it does not, or after a turn).
+    index : str, optional
+        Channel of the index pulse, where the angle is 0.
+    edges : path, optional
+        File of the encoder's edges: time and count after each, on the clock of x.
+    nonlinearity : float, optional
+        Standard deviation of the accelerometers' nonlinearity at 1 g in per cent, with encoder
+        (default 0.02).
+    runout : float, optional
+        Standard deviation of the axle's run-out in m, with encoder (default 3e-5).
+    radius : float, optional
+        Largest distance of the accelerometers from the axle in m, with encoder (default 0.3).
     name : str, optional
         Name of the sensor, for certificate and sensor file.
     serial : str, optional

@@ -18,7 +18,8 @@ namespace {
 
 struct BudgetCommand {
   std::vector<double> bias_mg, times_s;
-  std::vector<std::string> sensors;
+  std::vector<std::string> sensors, parts;
+  double temperature_change_k = 5.0;
   OutputFlags output;
 };
 
@@ -33,6 +34,16 @@ void add_budget_flags(CLI::App& verb, BudgetCommand& command) {
   verb.add_option("--times", command.times_s, "elapsed times (default 1,10,60,3600)")
       ->type_name("S,S...")
       ->delimiter(',')
+      ->check(not_negative());
+  verb.add_option("--parts", command.parts,
+                  "compare accelerometers by their datasheets: names, or all; with and without "
+                  "rests")
+      ->type_name("NAME,...|all")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  verb.add_option("--temperature-change", command.temperature_change_k,
+                  "of the calibrated --parts since their calibration (default 5)")
+      ->type_name("K")
       ->check(not_negative());
   add_report_flag(verb, command.output);
   add_output_flags(verb, command.output);
@@ -118,6 +129,26 @@ std::vector<estimate::BudgetSensor> axes_of(const std::string& path, std::vector
   return sensors;
 }
 
+std::vector<const sensor::AccelerometerPart*> parts_of(const std::vector<std::string>& names) {
+  std::vector<const sensor::AccelerometerPart*> parts;
+  for (const std::string& name : names) {
+    if (name == "all") {
+      for (const sensor::AccelerometerPart& part : sensor::accelerometer_parts())
+        parts.push_back(&part);
+      continue;
+    }
+    if (const sensor::AccelerometerPart* part = sensor::find_part(name)) {
+      parts.push_back(part);
+      continue;
+    }
+    std::string known;
+    for (const sensor::AccelerometerPart& part : sensor::accelerometer_parts())
+      known += fmt::format("{}{}", known.empty() ? "" : ", ", part.name);
+    throw Failure(usage, fmt::format("--parts: no part {}: expected all, or of {}", name, known));
+  }
+  return parts;
+}
+
 void run_budget(const BudgetCommand& command) {
   report::BudgetReport report;
   std::vector<estimate::BudgetSensor> sensors;
@@ -127,11 +158,15 @@ void run_budget(const BudgetCommand& command) {
   for (const std::string& path : command.sensors) {
     for (auto& axis : axes_of(path, report.notes)) sensors.push_back(std::move(axis));
   }
-  if (sensors.empty()) sensors = estimate::grade_sensors();
+  const auto parts = parts_of(command.parts);
+  if (sensors.empty() && parts.empty()) sensors = estimate::grade_sensors();
   std::vector<double> times_s = command.times_s;
+  if (times_s.empty() && !parts.empty() && sensors.empty()) times_s = {10.0};
   if (times_s.empty()) times_s.assign(sensor::grade_times_s.begin(), sensor::grade_times_s.end());
   std::sort(times_s.begin(), times_s.end());
   report.inputs = command.sensors;
+  report.temperature_change_k = command.temperature_change_k;
+  report.parts = report::part_rows(parts, times_s, command.temperature_change_k);
   report.rows = estimate::position_budget(sensors, times_s);
   finish(report::describe(report), {}, command.output);
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "calibrate/command.hpp"
+#include "calibrate/encoder.hpp"
 #include "calibrate/gyroscope.hpp"
 #include "calibrate/poses.hpp"
 #include "cli/console.hpp"
@@ -64,9 +65,31 @@ void add_gyroscope_flags(CLI::App& verb, CalibrateCommand& command) {
       ->check(CLI::IsMember({"rad/s", "deg/s", "counts", "V"}));
   verb.add_option("--turntable", command.turntable,
                   "a steady rotation of a turntable about any axis, in s and deg/s, optionally "
-                  "with the standard deviation of the rate; may be repeated")
-      ->type_name("START,END,DEG_PER_S[,STD]")
+                  "with the standard deviation of the rate, or a file of such lines; may be "
+                  "repeated")
+      ->type_name("START,END,DEG_PER_S[,STD]|FILE")
       ->allow_extra_args(false);
+}
+
+// Flags of `calibrate --encoder`.
+void add_encoder_calibration_flags(CLI::App& verb, CalibrateCommand& command) {
+  add_encoder_flags(verb, command.encoder,
+                    "calibrate the encoder of a wheel by the accelerometers on it, instead of an "
+                    "accelerometer by positions");
+  verb.add_option("--nonlinearity", command.nonlinearity_percent,
+                  "standard deviation of the accelerometers' nonlinearity at 1 g, with --encoder "
+                  "(default 0.02)")
+      ->type_name("PERCENT")
+      ->check(not_negative());
+  verb.add_option("--runout", command.runout_m,
+                  "standard deviation of the axle's run-out, with --encoder (default 3e-5)")
+      ->type_name("M")
+      ->check(not_negative());
+  verb.add_option("--radius", command.radius_m,
+                  "largest distance of the accelerometers from the axle, with --encoder (default "
+                  "0.3)")
+      ->type_name("M")
+      ->check(positive());
 }
 
 // Flags of `calibrate` for uncertainties.
@@ -112,6 +135,7 @@ void add_calibrate_flags(CLI::App& verb, CalibrateCommand& command) {
   add_pose_flags(verb, command);
   add_uncertainty_flags(verb, command);
   add_gyroscope_flags(verb, command);
+  add_encoder_calibration_flags(verb, command);
   verb.add_option("--name", command.name, "name of the sensor, for certificate and sensor file")
       ->type_name("TEXT");
   verb.add_option("--serial", command.serial, "its serial number")->type_name("TEXT");
@@ -393,6 +417,7 @@ void check_by_draws(const CalibrateCommand& command,
 }  // namespace
 
 void run_calibrate(const CalibrateCommand& given) {
+  if (given.encoder.wanted) return run_calibrate_encoder(given);
   CalibrateCommand command = given;
   command.gyro |= !command.gyro_file.empty();
   expect_sense(command);

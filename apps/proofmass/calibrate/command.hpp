@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/common_flags.hpp"
+#include "input/encoder.hpp"
 
 namespace proofmass::app {
 
@@ -25,6 +26,9 @@ struct CalibrateCommand {
   std::string gyro_file;                   ///< its recording, if it has one of its own
   std::string rate_unit = "rad/s";         ///< where the gyroscope's headings have none
   std::vector<std::string> turntable;      ///< START,END,DEG_PER_S[,STD]
+  EncoderFlags encoder;                    ///< calibrate the encoder of a wheel instead
+  double nonlinearity_percent = 0.02, runout_m = 30e-6;
+  std::optional<double> radius_m;
   std::string name, serial, date;
   std::string update_sensor;
   InputFlags input;

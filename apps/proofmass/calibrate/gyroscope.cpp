@@ -1,8 +1,10 @@
 #include "calibrate/gyroscope.hpp"
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <fstream>
 
 #include "cli/console.hpp"
 #include "cli/exit_status.hpp"
@@ -93,6 +95,35 @@ TurntableRate parse_rate(const std::string& text) {
           .std_radps = std * rad_per_deg};
 }
 
+// The rates of --turntable: one, or a table of one a line. Lines that begin with a letter or # are
+// headings.
+std::vector<TurntableRate> rates_in(const std::string& text) {
+  if (text.find(',') != std::string::npos) return {parse_rate(text)};
+  std::ifstream file(text);
+  if (!file)
+    throw Failure(bad_input, fmt::format("--turntable: {}: cannot be read; expected "
+                                         "START,END,DEG_PER_S[,STD] or a file of such lines",
+                                         text));
+  std::vector<TurntableRate> rates;
+  std::size_t number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    std::erase_if(line, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
+    const bool heading = !line.empty() && (std::isalpha(static_cast<unsigned char>(line[0])) != 0 ||
+                                           line[0] == '#' || line[0] == '"');
+    if (line.empty() || heading) continue;
+    try {
+      rates.push_back(parse_rate(line));
+    } catch (const Failure& failure) {
+      throw Failure(bad_input, fmt::format("{}: line {}: {}", text, number, failure.what()));
+    }
+  }
+  if (rates.empty())
+    throw Failure(bad_input,
+                  fmt::format("--turntable: {}: no line START,END,DEG_PER_S[,STD]", text));
+  return rates;
+}
+
 // With the poses as the accelerometer's calibration took them.
 std::vector<GyroscopeSession> sessions_of(const PoseSet& set) {
   std::vector<GyroscopeSession> sessions;
@@ -152,7 +183,8 @@ void calibrate_gyroscope(const CalibrateCommand& command,
   calibrate::GyroscopeOptions options{.in_radps = set.rates.front().unit.quantity ==
                                                   Quantity::angular_rate};
   if (command.input.latitude_deg) options.latitude_rad = *command.input.latitude_deg * rad_per_deg;
-  for (const std::string& text : command.turntable) options.table.push_back(parse_rate(text));
+  for (const std::string& text : command.turntable)
+    for (const TurntableRate& rate : rates_in(text)) options.table.push_back(rate);
   if (!options.table.empty() && set.rates.size() > 1)
     throw Failure(usage, "--turntable goes with one recording");
   auto fit = calibrate::calibrate_gyroscope(sessions_of(set), report.fit, options);

@@ -4,7 +4,9 @@
 #include <cctype>
 #include <fmt/format.h>
 
+#include "cli/exit_status.hpp"
 #include "proofmass/core/units.hpp"
+#include "proofmass/sensor/calibrated_rates.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -121,6 +123,43 @@ std::array<std::vector<double>, 3> rates_radps(const Recording& recording,
     for (double& value : rates[axis]) value = unit.si(value);
   }
   return rates;
+}
+
+std::array<std::vector<double>, 3> calibrated_rates_radps(
+    const Recording& recording,
+    const GyroscopeChannels& channels,
+    const sensor::SensorModel* model,
+    const std::array<std::vector<double>, 3>& accel_mps2,
+    const std::string& unit_if_unknown,
+    std::vector<Note>& notes) {
+  if (model == nullptr || !sensor::is_calibrated(model->gyroscope))
+    return rates_radps(recording, channels, unit_if_unknown, notes);
+  const std::string unit = sensor::reading_unit(model->gyroscope);
+  std::array<std::vector<double>, 3> rates;
+  if (unit == "rad/s") {
+    rates = rates_radps(recording, channels, unit_if_unknown, notes);
+  } else {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Channel& channel = recording.channels[channels[axis]];
+      if (channel.unit.quantity == Quantity::angular_rate)
+        throw Failure(usage,
+                      fmt::format("{}: the sensor file calibrates the gyroscope's {}, and "
+                                  "channel {} is in {}",
+                                  recording.source, unit, channel.name, channel.unit.symbol));
+      rates[axis] = channel.values;
+    }
+  }
+  const Status applied = sensor::apply(model->gyroscope, accel_mps2, rates);
+  if (!applied) throw Failure(usage, applied.error().at(recording.source).message);
+  notes.push_back({Severity::info, fmt::format("gyroscope {} etc.: calibrated by the sensor file",
+                                               recording.channels[channels[0]].name)});
+  return rates;
+}
+
+const sensor::SensorModel* sensor_model_of(const std::vector<sensor::SensorModel>& models,
+                                           std::size_t at) {
+  if (models.empty()) return nullptr;
+  return models.size() == 1 ? &models.front() : &models[std::min(at, models.size() - 1)];
 }
 
 }  // namespace proofmass::app

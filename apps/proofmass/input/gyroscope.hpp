@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "proofmass/core/recording.hpp"
+#include "proofmass/sensor/sensor_model.hpp"
 
 // The gyroscope that belongs to an accelerometer.
 namespace proofmass::app {
@@ -26,5 +27,20 @@ using GyroscopeChannels = std::array<std::size_t, 3>;
                                                              const GyroscopeChannels& channels,
                                                              const std::string& unit_if_unknown,
                                                              std::vector<Note>& notes);
+
+/// The same, calibrated by the sensor file if it has a gyroscope: `accel_mps2` is the calibrated
+/// specific force beside it. Channels without a unit are then in that of the calibration. Throws
+/// Failure (a calibration of volts or counts for channels in a unit of angular rate).
+[[nodiscard]] std::array<std::vector<double>, 3> calibrated_rates_radps(
+    const Recording& recording,
+    const GyroscopeChannels& channels,
+    const sensor::SensorModel* model,
+    const std::array<std::vector<double>, 3>& accel_mps2,
+    const std::string& unit_if_unknown,
+    std::vector<Note>& notes);
+
+/// The model of accelerometer `at` of --sensor: one for all or one for each; nullptr without.
+[[nodiscard]] const sensor::SensorModel* sensor_model_of(
+    const std::vector<sensor::SensorModel>& models, std::size_t at);
 
 }  // namespace proofmass::app

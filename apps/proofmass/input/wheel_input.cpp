@@ -32,6 +32,7 @@ estimate::WheelSensor wheel_sensor(const Recording& recording,
                                    const Accelerometer& from,
                                    double begin_s,
                                    const GyroscopeUse& gyroscope,
+                                   const sensor::SensorModel* model,
                                    std::vector<Note>& notes) {
   estimate::WheelSensor sensor;
   sensor.name = from.name;
@@ -53,7 +54,8 @@ estimate::WheelSensor wheel_sensor(const Recording& recording,
   }
   if (!gyroscope.wanted || triad.axes() < 3) return sensor;
   if (const auto channels = find_gyroscope(recording, triad))
-    sensor.rate_radps = rates_radps(recording, *channels, gyroscope.unit_if_unknown, notes);
+    sensor.rate_radps = calibrated_rates_radps(recording, *channels, model, sensor.accel_mps2,
+                                               gyroscope.unit_if_unknown, notes);
   return sensor;
 }
 
@@ -102,7 +104,9 @@ WheelInput wheel_input(const std::vector<std::string>& files,
           std::min(*recordings[0].time.start_ns, *recordings[1].time.start_ns);
       begin_s = static_cast<double>(*recording.time.start_ns - first) * s_per_ns;
     }
-    input.sensors.push_back(wheel_sensor(recording, one, begin_s, gyroscope, input.notes));
+    input.sensors.push_back(wheel_sensor(recording, one, begin_s, gyroscope,
+                                         sensor_model_of(models, input.sensors.size()),
+                                         input.notes));
   }
   if (!models.empty()) {
     input.alignment_std_rad = sensor::alignment_std_rad(models.front()).value_or(0.0);

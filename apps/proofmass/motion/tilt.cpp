@@ -201,6 +201,15 @@ double step_after(const RawSteps& raw, const std::vector<double>& values) {
   return raw.lsb * std::abs(values[raw.highest] - values[raw.lowest]) / raw.range;
 }
 
+// The accelerometer's channels, for the g-sensitivity of the gyroscope.
+std::array<std::vector<double>, 3> forces_of(
+    const Recording& recording, const std::array<std::optional<std::size_t>, 3>& axes) {
+  std::array<std::vector<double>, 3> out;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (axes[i]) out[i] = recording.channels[*axes[i]].values;
+  return out;
+}
+
 estimate::TiltRecord prepare(const TiltCommand& command,
                              estimate::TiltOptions& options,
                              std::vector<Note>& notes) {
@@ -230,7 +239,9 @@ estimate::TiltRecord prepare(const TiltCommand& command,
       for (double& value : record.accel_mps2[i]) value = -value;
   }
   if (const auto channels = gyroscope_of(command, recording, one.triad))
-    record.rate_radps = rates_radps(recording, *channels, command.rate_unit, notes);
+    record.rate_radps =
+        calibrated_rates_radps(recording, *channels, sensor_model_of(models, 0),
+                               forces_of(recording, axes), command.rate_unit, notes);
   return record;
 }
 

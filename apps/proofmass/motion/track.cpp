@@ -240,6 +240,7 @@ std::array<std::vector<double>, 3> readings_of(const Recording& recording, const
 TrackSensor sensor_of(const TrackCommand& command,
                       const Recording& recording,
                       const Accelerometer& from,
+                      const sensor::SensorModel* model,
                       std::vector<Note>& notes) {
   TrackSensor sensor;
   sensor.name = from.name;
@@ -254,7 +255,8 @@ TrackSensor sensor_of(const TrackCommand& command,
                      "the gyroscope's channels are left alone: only --model inertial uses them"});
     return sensor;
   }
-  sensor.rate_radps = rates_radps(recording, *channels, command.rate_unit, notes);
+  sensor.rate_radps = calibrated_rates_radps(recording, *channels, model, sensor.accel_mps2,
+                                             command.rate_unit, notes);
   return sensor;
 }
 
@@ -273,7 +275,8 @@ TrackSensor prepare(const TrackCommand& command, TrackOptions& options, std::vec
   const bool warm = command.input.since_switch_on_s.has_value();
   if (!models.empty()) take_from_sensor(models.front(), warm, options);
   read_lists(command, recording, options);
-  TrackSensor sensor = sensor_of(command, recording, found.front(), notes);
+  TrackSensor sensor =
+      sensor_of(command, recording, found.front(), sensor_model_of(models, 0), notes);
   if (found.size() > 1) sensor.name = found.front().triad.name;
   for (std::size_t k = 1; k < found.size(); ++k) {
     estimate::ParallelAccelerometer& beside = sensor.beside.emplace_back();

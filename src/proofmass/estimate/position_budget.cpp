@@ -44,6 +44,16 @@ std::vector<BudgetRow> position_budget(View<BudgetSensor> sensors, View<double> 
   return rows;
 }
 
+BudgetParts distance_between_rests(const BudgetNoise& noise, double t_s) {
+  PM_EXPECTS(t_s >= 0.0);
+  const double t3 = t_s * t_s * t_s;
+  return {.bias_m = 0.0,
+          .white_m = noise.white_mps2_rthz * std::sqrt(t3 / 12.0),
+          .flicker_m = noise.flicker_mps2 * t_s * t_s / std::sqrt(16.0 * std::numbers::pi),
+          .random_walk_m = noise.random_walk_mps2_rts * std::sqrt(t3 * t_s * t_s / 120.0),
+          .ramp_m = 0.0};
+}
+
 std::vector<BudgetSensor> grade_sensors() {
   std::vector<BudgetSensor> sensors;
   sensors.reserve(sensor::grades.size());

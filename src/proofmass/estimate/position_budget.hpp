@@ -62,6 +62,17 @@ struct BudgetRow {
 [[nodiscard]] std::vector<BudgetRow> position_budget(View<BudgetSensor> sensors,
                                                      View<double> times_s);
 
+/// Standard deviation of the distance between two rests, a time t_s apart, by double integration
+/// with the velocity 0 at both:
+///
+///     √(N² t³/12 + B² t⁴/(16 π) + K² t⁵/120).
+///
+/// The second rest shows a constant bias, v(t)/t, so that the error of the distance is ∫ (t/2 − s)
+/// a(s) ds over the noise a: a bias contributes nothing, flicker ∬ w(s) w(s') of its autocovariance
+/// −(B²/π) ln |s − s'|, for which ∬ x y ln |x − y| over the unit square about 0 is −1/16. Scale
+/// error and a change of tilt are not included, nor is the ramp. Source: as above.
+[[nodiscard]] BudgetParts distance_between_rests(const BudgetNoise& noise, double t_s);
+
 /// The sensors of table 2.1: one for each grade, exact bias, no noise.
 [[nodiscard]] std::vector<BudgetSensor> grade_sensors();
 

@@ -205,5 +205,48 @@ TEST(PositionBudget, TheStdIsTheRootSumOfSquaresOfItsParts) {
   EXPECT_DOUBLE_EQ(parts.ramp_m, 4e-2 * 27.0 / 6.0);
 }
 
+// The sum that the closed forms replace: noise series, integrated twice, less the bias that the
+// final velocity shows.
+TEST(PositionBudget, BetweenRestsIsThatOfSimulatedIntegrations) {
+  constexpr std::size_t steps = 400;
+  constexpr double t_s = 10.0, dt = t_s / steps;
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  double white2 = 0.0, walk2 = 0.0;
+  constexpr int runs = 4000;
+  for (int run = 0; run < runs; ++run) {
+    double bias = 0.0;
+    std::array<double, 2> v{}, p{};
+    for (std::size_t k = 0; k < steps; ++k) {
+      const std::array a{0.5 + normal(random) / std::sqrt(dt), bias};
+      for (std::size_t i = 0; i < 2; ++i) {
+        p[i] += v[i] * dt + 0.5 * a[i] * dt * dt;
+        v[i] += a[i] * dt;
+      }
+      bias += normal(random) * std::sqrt(dt);
+    }
+    white2 += std::pow(p[0] - 0.5 * v[0] * t_s, 2) / runs;
+    walk2 += std::pow(p[1] - 0.5 * v[1] * t_s, 2) / runs;
+  }
+  const BudgetParts parts =
+      distance_between_rests({.white_mps2_rthz = 1.0, .random_walk_mps2_rts = 1.0}, t_s);
+  EXPECT_NEAR(std::sqrt(white2) / parts.white_m, 1.0, 0.05);
+  EXPECT_NEAR(std::sqrt(walk2) / parts.random_walk_m, 1.0, 0.05);
+}
+
+TEST(PositionBudget, FlickerBetweenRestsIsTheIntegralOfItsAutocovariance) {
+  constexpr int n = 1500;
+  double sum = 0.0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double x = (i + 0.5) / n - 0.5, y = (j + 0.5) / n - 0.5;
+      // The mean of ln |x − y| over a cell on the diagonal is ln h − 3/2.
+      sum += x * y * (i == j ? std::log(1.0 / n) - 1.5 : std::log(std::abs(x - y)));
+    }
+  const double variance = -sum / (static_cast<double>(n) * n) / std::numbers::pi;
+  EXPECT_NEAR(distance_between_rests({.flicker_mps2 = 1.0}, 1.0).flicker_m, std::sqrt(variance),
+              1e-3);
+}
+
 }  // namespace
 }  // namespace proofmass::estimate::position_budget_test

@@ -64,6 +64,9 @@ Figure error_figure(const BudgetReport& report) {
 }
 
 std::string conclusion(const BudgetReport& report) {
+  if (report.rows.empty() && !report.parts.empty())
+    return fmt::format("{} compared by their datasheets.",
+                       count_words(report.parts.size(), "part"));
   if (report.rows.empty() || report.rows.front().errors.empty()) return "Nothing to compute.";
   const BudgetRow& best = report.rows.front();
   const BudgetRow& worst = report.rows.back();
@@ -102,6 +105,112 @@ Fields row_fields(const BudgetRow& row) {
           field::records("error_m", row.errors, error_fields)};
 }
 
+Field part_figure(std::string key, const std::optional<sensor::PartFigure>& figure, About about) {
+  about.why_null = "not in the table: the datasheet has none, or in another form";
+  std::optional<Fields> fields;
+  if (figure)
+    fields = Fields{
+        field::number("value", figure->value),
+        field::choice("kind", figure->kind == sensor::FigureKind::limit ? "limit" : "typical",
+                      {"typical", "limit"})};
+  return field::object_or_null(std::move(key), std::move(fields), std::move(about));
+}
+
+Fields part_error_fields(const PartRow& row, const PartError& error) {
+  return {field::number("t_s", error.t_s),
+          field::magnitude("delivered", error.delivered_m,
+                           {.meaning = "double integration from rest with the offset as delivered",
+                            .why_null = row.why_not_delivered}),
+          field::magnitude("calibrated", error.calibrated_m,
+                           {.meaning = "the same with the bias calibrated, after a change of "
+                                       "temperature",
+                            .why_null = row.why_not_calibrated}),
+          field::magnitude("between_rests", error.between_rests_m,
+                           {.meaning = "of the distance between two rests so far apart",
+                            .why_null = row.why_not_between_rests})};
+}
+
+Fields part_fields(const PartRow& row) {
+  const sensor::AccelerometerPart& part = *row.part;
+  return {field::text("name", part.name),
+          field::text("maker", part.maker),
+          field::choice("output", part.output == sensor::PartOutput::analog ? "analog" : "digital",
+                        {"analog", "digital"}),
+          field::text("document", part.document, {.meaning = "the datasheet of the figures"}),
+          field::magnitude("range_mps2", part.range_mps2),
+          part_figure("noise_mps2_rthz", part.noise_mps2_rthz, {.meaning = "one-sided density"}),
+          part_figure("offset_mps2", part.offset_mps2, {.meaning = "±, as delivered"}),
+          part_figure("offset_mps2_per_k", part.offset_mps2_per_k, {}),
+          part_figure("in_run_mps2", part.in_run_mps2, {.meaning = "bias instability"}),
+          part_figure("repeatability_mps2", part.repeatability_mps2, {}),
+          part_figure("scale", part.scale, {.meaning = "± fraction"}),
+          part_figure("scale_per_k", part.scale_per_k, {}),
+          part_figure("nonlinearity", part.nonlinearity, {.meaning = "± fraction of full scale"}),
+          part_figure("cross_axis", part.cross_axis, {}),
+          field::records("std_m", row.errors,
+                         [&row](const PartError& error) { return part_error_fields(row, error); })};
+}
+
+// At one time, by falling error between rests.
+Table jobs_table(const BudgetReport& report, std::size_t at) {
+  const double t_s = report.parts.front().errors[at].t_s;
+  Table table{fmt::format("Standard deviation of the position after {} (calibrated: {:g} K from "
+                          "the temperature of the calibration)",
+                          duration_words(t_s), report.temperature_change_k),
+              {"Part", "Maker", "As delivered", "Calibrated", "Between rests"},
+              {}};
+  const auto words = [](const std::optional<double>& error_m) {
+    return error_m ? length_words(*error_m) : std::string(absent);
+  };
+  for (const PartRow& row : report.parts) {
+    const PartError& error = row.errors[at];
+    table.rows.push_back({std::string(row.part->name), std::string(row.part->maker),
+                          words(error.delivered_m), words(error.calibrated_m),
+                          words(error.between_rests_m)});
+  }
+  return table;
+}
+
+std::string figure_words(const std::optional<sensor::PartFigure>& figure,
+                         double factor,
+                         const char* unit) {
+  if (!figure) return std::string(absent);
+  return fmt::format("{} {}{}", compact(figure->value * factor, 3), unit,
+                     figure->kind == sensor::FigureKind::limit ? " max" : "");
+}
+
+Table datasheets_table(const BudgetReport& report) {
+  Table table{"Figures of the datasheets; typical unless max is stated",
+              {"Part", "Noise", "Offset", "Per kelvin", "Scale", "Document"},
+              {}};
+  table.page_only = true;
+  constexpr double g = standard_gravity_mps2;
+  for (const PartRow& row : report.parts) {
+    const sensor::AccelerometerPart& part = *row.part;
+    table.rows.push_back({std::string(part.name),
+                          figure_words(part.noise_mps2_rthz, 1e6 / g, "µg/√Hz"),
+                          figure_words(part.offset_mps2, 1e3 / g, "mg"),
+                          figure_words(part.offset_mps2_per_k, 1e3 / g, "mg"),
+                          figure_words(part.scale, 100.0, "%"), std::string(part.document)});
+  }
+  return table;
+}
+
+Section parts_section(const BudgetReport& report) {
+  Section section{
+      .heading = "Parts by their datasheets",
+      .paragraphs = {"A typical figure counts as one standard deviation, a limit as that of a "
+                     "uniform distribution. Between two rests a constant bias cancels: what "
+                     "remains is √(N² t³/12 + B² t⁴/(16 π)). Drift of the bias that a datasheet "
+                     "does not state (flicker, random walk), scale error and a change of tilt "
+                     "are not included: characterise the device with noise and calibrate."},
+      .on_terminal = true};
+  for (std::size_t at = 0; at < report.parts.front().errors.size(); ++at)
+    section.tables.push_back(jobs_table(report, at));
+  section.tables.push_back(datasheets_table(report));
+  return section;
+}
+
 // Contributions to the standard deviation at the last time; those that are 0 are omitted.
 Table parts_table(const BudgetReport& report) {
   Table table{"", {"Sensor", "Bias", "White noise", "Flicker", "Random walk", "Ramp"}, {}};
@@ -136,14 +245,19 @@ Section error_section(const BudgetReport& report) {
 }  // namespace
 
 Document describe(const BudgetReport& report) {
-  Document document{.page = {.verb = "budget",
-                             .title = "Position error of an unaided accelerometer",
-                             .inputs = report.inputs,
-                             .conclusion = conclusion(report),
-                             .notes = report.notes},
-                    .fields = {field::records("rows", report.rows, row_fields)}};
-  document.page.sections = {
-      error_section(report),
+  Document document{
+      .page = {.verb = "budget",
+               .title = "Position error of an unaided accelerometer",
+               .inputs = report.inputs,
+               .conclusion = conclusion(report),
+               .notes = report.notes},
+      .fields = {field::records("rows", report.rows, row_fields),
+                 field::records("parts", report.parts, part_fields, {.meaning = "with --parts"}),
+                 field::number("temperature_change_k", report.temperature_change_k,
+                               {.meaning = "of the calibrated parts"})}};
+  if (!report.rows.empty()) document.page.sections.push_back(error_section(report));
+  if (!report.parts.empty()) document.page.sections.push_back(parts_section(report));
+  document.page.sections.push_back(
       {.heading = "How it was computed",
        .paragraphs = {
            "An uncorrected bias b gives ½ b t² after the time t. The standard deviation after ± "
@@ -151,7 +265,7 @@ Document describe(const BudgetReport& report) {
            "white noise (velocity random walk), K random walk from the beginning of the "
            "integration, R ramp, and σ_B = B √((ln(P/(2π t)) + 1.17)/π) from flicker B of periods "
            "up to P, one hour or ten times t. Scale errors and tilt act through the motion and "
-           "are not included."}}};
+           "are not included."}});
   return document;
 }
 

@@ -8,6 +8,7 @@
 
 #include "proofmass/calibrate/gyroscope_budget.hpp"
 #include "proofmass/report/budget_report.hpp"
+#include "proofmass/report/calibrate/encoder_report.hpp"
 #include "proofmass/report/calibrate/fake.hpp"
 #include "proofmass/report/convert_report.hpp"
 #include "proofmass/report/drift/fake.hpp"
@@ -165,7 +166,11 @@ TEST(Schemas, Tune) {
 }
 
 TEST(Schemas, Budget) {
-  const BudgetReport report{{}, {}, {{"Tactical", {3e-3, 0.0}, {{1.0, {1.5e-3, 0.0}}}}}};
+  BudgetReport report{{}, {}, {{"Tactical", {3e-3, 0.0}, {{1.0, {1.5e-3, 0.0}}}}}};
+  std::vector<const sensor::AccelerometerPart*> parts;
+  for (const sensor::AccelerometerPart& part : sensor::accelerometer_parts())
+    parts.push_back(&part);
+  report.parts = part_rows(parts, {10.0}, 5.0);
   expect_schema("Position error by double integration from rest.", {describe(report)});
 }
 
@@ -253,6 +258,29 @@ TEST(Schemas, Calibrate) {
       "the figure names another.",
       {describe(full), describe(counts), describe(volts), describe(untimed),
        describe(fake_bare_report())});
+}
+
+TEST(Schemas, EncoderCalibration) {
+  EncoderReport seen{.inputs = {"a.csv"},
+                     .notes = {},
+                     .channel = "encoder",
+                     .options = {},
+                     .fit = {},
+                     .index_slips = {{}}};
+  seen.fit.shares = {{}};
+  seen.fit.missed = {{}};
+  seen.fit.step_rad = 1e-3;
+  seen.fit.detectable_counts = 1;
+  seen.fit.axis_names = {"x"};
+  seen.fit.residual_rms_mps2 = {0.02};
+  const EncoderReport unseen = seen;
+  for (calibrate::EncoderHarmonic& one : seen.fit.harmonics) {
+    one.amplitude_rad = Uncertain{5e-3, 1e-4};
+    one.phase_rad = Uncertain{1.0, 0.02};
+    one.phase_95_rad = {0.96, 1.04};
+  }
+  expect_schema("Errors of an encoder by the accelerometers on its wheel. SI.",
+                {describe(seen), describe(unseen)}, "calibrate_encoder");
 }
 
 // One output with all coefficients, in this unit.

@@ -104,6 +104,14 @@ struct DriftModel {
   friend bool operator==(const DriftModel&, const DriftModel&) = default;
 };
 
+/// An incremental encoder on the axle: ψ = θ + Σ cos_n cos nθ + sin_n sin nθ, n = 1 (eccentricity)
+/// and 2, with the count ψ and the angle θ from where the count is 0.
+struct Encoder {
+  std::optional<Figure> counts_per_turn;                           ///< 1
+  std::optional<Figure> once_cos, once_sin, twice_cos, twice_sin;  ///< rad
+  friend bool operator==(const Encoder&, const Encoder&) = default;
+};
+
 /// A line of a sensor file that is unknown to this version, kept so that it is written back.
 struct UnknownEntry {
   std::string section;  ///< empty: outside any section
@@ -120,6 +128,7 @@ struct SensorModel {
   NoiseModel noise;
   DriftModel drift;
   Gyroscope gyroscope;
+  Encoder encoder;
   std::vector<UnknownEntry> unknown;
   friend bool operator==(const SensorModel&, const SensorModel&) = default;
 };

@@ -15,14 +15,15 @@ namespace {
 
 using sensor::FigureSlot;
 
-constexpr std::array<std::string_view, 5> figure_sections{"calibration", "noise", "drift",
-                                                          "electrical", "gyroscope"};
+constexpr std::array<std::string_view, 6> figure_sections{"calibration", "noise",     "drift",
+                                                          "electrical",  "gyroscope", "encoder"};
 
 std::string section_words(std::string_view section) {
   if (section == "calibration") return "Calibration";
   if (section == "noise") return "Noise";
   if (section == "drift") return "Warm-up";
   if (section == "gyroscope") return "Gyroscope";
+  if (section == "encoder") return "Encoder";
   return "Electrical";
 }
 
@@ -85,7 +86,7 @@ std::string contents(const SensorShow& report) {
     if (count > 0)
       known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", section,
                            count_words(count, "figure"));
-    else if (section != "gyroscope")  // which many sensors do not have
+    else if (section != "gyroscope" && section != "encoder")  // which many sensors do not have
       unknown += fmt::format("{}{}", unknown.empty() ? "" : ", ", section);
   }
   if (known.empty()) return "The file has no figures.";

@@ -8,8 +8,8 @@
 
 namespace proofmass::sensor {
 
-inline constexpr std::array<std::string_view, 6> sections{"sensor", "electrical", "calibration",
-                                                          "noise",  "drift",      "gyroscope"};
+inline constexpr std::array<std::string_view, 7> sections{
+    "sensor", "electrical", "calibration", "noise", "drift", "gyroscope", "encoder"};
 
 /// Rows of Gyroscope::covariance.
 inline constexpr std::string_view gyroscope_order =
@@ -58,6 +58,12 @@ void visit_figures(Model& model, Visit&& visit) {
   visit("gyroscope", "white", Units{"rad/s/sqrt(Hz)"}, g.white);
   visit("gyroscope", "flicker", Units{"rad/s"}, g.flicker);
   visit("gyroscope", "random_walk", Units{"rad/s/sqrt(s)"}, g.random_walk);
+  auto& turning = model.encoder;
+  visit("encoder", "counts_per_turn", Units{"1"}, turning.counts_per_turn);
+  visit("encoder", "once_cos", Units{"rad"}, turning.once_cos);
+  visit("encoder", "once_sin", Units{"rad"}, turning.once_sin);
+  visit("encoder", "twice_cos", Units{"rad"}, turning.twice_cos);
+  visit("encoder", "twice_sin", Units{"rad"}, turning.twice_sin);
 }
 
 /// The nine figures of a calibration in the order of its covariance, as pointers to

@@ -1,0 +1,250 @@
+#include "proofmass/calibrate/encoder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "proofmass/calibrate/encoder/fit.hpp"
+#include "proofmass/calibrate/encoder/results.hpp"
+#include "proofmass/core/statistics.hpp"
+
+namespace proofmass::calibrate {
+namespace {
+
+constexpr double fewest_turns = 5.0, fewest_fixes_a_turn = 48.0;
+constexpr std::size_t most_blocks = 24;
+/// Largest |α|/ω² of a row that is used: beyond, the speed changes too much within the parabolas.
+constexpr double steepest = 0.5;
+
+Status check_recording(const EncoderRecording& recording) {
+  if (recording.axes.empty())
+    return Error{Errc::invalid_argument, recording.name + ": no accelerometer"};
+  for (const auto& axis : recording.axes)
+    if (axis.size() != recording.time_s.size())
+      return Error{Errc::invalid_argument, recording.name + ": channels of different lengths"};
+  if (recording.axis_names.size() != recording.axes.size() ||
+      recording.sensor_of.size() != recording.axes.size())
+    return Error{Errc::invalid_argument, recording.name + ": axes without a name or sensor"};
+  return Done{};
+}
+
+/// Below a tenth of the usual speed the wheel is taken to stand: one angle, and its quantisation.
+double slowest_of(const std::vector<double>& speeds) {
+  std::vector<double> sizes;
+  for (const double speed : speeds)
+    if (!std::isnan(speed)) sizes.push_back(std::abs(speed));
+  return 0.1 * quantile(sizes, 0.9).value_or(0.0);
+}
+
+/// Assigns blocks of whole turns; the last one contains the rest.
+void divide(const std::vector<double>& turned, EncoderRows& rows) {
+  const double turns = turned.empty() ? 0.0 : turned.back();
+  const double each = std::max(1.0, std::ceil(turns / static_cast<double>(most_blocks)));
+  rows.blocks = static_cast<std::size_t>(std::max(1.0, std::floor(turns / each)));
+  for (const double turn : turned)
+    rows.block.push_back(std::min(static_cast<std::size_t>(turn / each), rows.blocks - 1));
+}
+
+/// From the acceleration about a fiftieth of a turn before and after.
+void add_jerk(EncoderRows& rows) {
+  constexpr double apart_rad = rad_per_turn / 48.0;
+  const std::size_t size = rows.row.size();
+  const auto& angle = rows.shown.angle_rad;
+  rows.jerk_radps3.assign(size, 0.0);
+  std::size_t first = 0, last = 0;
+  for (std::size_t k = 0; k < size; ++k) {
+    while (first < k && std::abs(angle[k] - angle[first]) > apart_rad) ++first;
+    last = std::max(last, k);
+    while (last + 1 < size && std::abs(angle[last] - angle[k]) < apart_rad) ++last;
+    const double span_s = rows.time_s[last] - rows.time_s[first];
+    if (span_s > 0.0)
+      rows.jerk_radps3[k] =
+          (rows.shown.accel_radps2[last] - rows.shown.accel_radps2[first]) / span_s;
+  }
+}
+
+/// Turns up to each row used.
+std::vector<double> select_rows(const EncoderRecording& recording,
+                                const signal::AngleFixes& fixes,
+                                EncoderRows& rows) {
+  const signal::AngleMotion shown = signal::motion_at(fixes, recording.time_s);
+  const double slowest = slowest_of(shown.speed_radps);
+  const double span_s = recording.time_s.back() - recording.time_s.front();
+  std::vector<double> turned;
+  double turns = 0.0;
+  std::optional<std::size_t> previous;
+  for (std::size_t k = 0; k < recording.time_s.size(); ++k) {
+    const double angle = shown.angle_rad[k], speed = shown.speed_radps[k],
+                 accel = shown.accel_radps2[k];
+    if (!std::isfinite(angle + speed + accel) || std::abs(speed) <= slowest ||
+        std::abs(accel) > steepest * speed * speed) {
+      previous.reset();
+      continue;
+    }
+    if (previous) turns += std::abs(angle - shown.angle_rad[*previous]) / rad_per_turn;
+    previous = k;
+    turned.push_back(turns);
+    rows.row.push_back(k);
+    rows.time_s.push_back(recording.time_s[k]);
+    rows.phase.push_back(2.0 * (recording.time_s[k] - recording.time_s.front()) / span_s - 1.0);
+    rows.shown.angle_rad.push_back(angle);
+    rows.shown.speed_radps.push_back(speed);
+    rows.shown.accel_radps2.push_back(accel);
+  }
+  add_jerk(rows);
+  divide(turned, rows);
+  return turned;
+}
+
+Status check_rows(const EncoderRecording& recording, double turns) {
+  if (!(turns >= fewest_turns))
+    return Error{Errc::too_few_samples,
+                 fmt::format("{}: the wheel turns {:.1f} times by the encoder; expected {:g} or "
+                             "more: check --counts-per-turn, or record longer",
+                             recording.name, turns, fewest_turns)};
+  const double each = static_cast<double>(recording.encoder.time_s.size()) / turns;
+  if (each < fewest_fixes_a_turn)
+    return Error{Errc::too_few_samples,
+                 fmt::format("{}: {:.0f} angles a turn from the encoder; expected {:g} or more: "
+                             "use a finer encoder, or record at a higher rate",
+                             recording.name, each, fewest_fixes_a_turn)};
+  return Done{};
+}
+
+/// Whether some axis follows gravity.
+bool follows_gravity(const EncoderFit& fit, const encoder::Layout& layout) {
+  for (std::size_t axis = 0; axis < layout.axes; ++axis) {
+    const double response =
+        fit.parameters.segment<2>(layout.axis(axis) + encoder::sin).squaredNorm();
+    if (response > fit.variance[axis]) return true;
+  }
+  return false;
+}
+
+/// The largest nonlinearity of an axis in the plane, as a multiple of its prior.
+double nonlinearity_shown(const EncoderFit& fit, const encoder::Layout& layout) {
+  double most = 0.0;
+  for (std::size_t axis = 0; axis < layout.axes; ++axis) {
+    const Eigen::Index first = layout.axis(axis);
+    if (fit.parameters.segment<2>(first + encoder::sin).norm() < 3.0) continue;
+    for (Eigen::Index i = first + encoder::nonlinear; i < first + encoder::nonlinear + 4; ++i)
+      most = std::max(most, std::abs(fit.parameters(i)) / fit.prior_std(i));
+  }
+  return most;
+}
+
+struct EncoderRound {
+  EncoderRows rows;
+  EncoderFit fit;
+  EncoderOffsets offsets;
+  double turns = 0.0;
+};
+
+Result<EncoderRound> one_round(const EncoderRecording& recording,
+                               const signal::AngleFixes& fixes,
+                               const EncoderOptions& options) {
+  EncoderRound round;
+  const std::vector<double> turned = select_rows(recording, fixes, round.rows);
+  round.turns = turned.empty() ? 0.0 : turned.back();
+  if (const Status enough = check_rows(recording, round.turns); !enough) return enough.error();
+  round.fit = fit_encoder(recording, round.rows, options);
+  if (!follows_gravity(round.fit, encoder::layout_of(recording)))
+    return Error{Errc::not_observable,
+                 recording.name +
+                     ": the accelerometers do not follow gravity at the encoder's angle: check "
+                     "--counts-per-turn and --unit; the axle must be level"};
+  round.offsets = offsets_of(recording, round.rows, round.fit, options.gravity_mps2);
+  return round;
+}
+
+void add_notes(const EncoderRecording& recording,
+               const EncoderOptions& given,
+               EncoderCalibration& out) {
+  if (!recording.has_index)
+    out.notes.emplace_back(
+        "without an index pulse the phases count from where this recording's count is zero; they "
+        "hold elsewhere only if the encoder is absolute or keeps its count (--index)");
+  if (out.nonlinearity > given.nonlinearity)
+    out.notes.push_back(fmt::format(
+        "the accelerometers' output has harmonics that neither gravity nor the encoder explains: "
+        "their nonlinearity is taken as {:.2g} % at 1 g instead of {:.2g} %",
+        100.0 * out.nonlinearity, 100.0 * given.nonlinearity));
+  if (out.blocks < 10)
+    out.notes.push_back(
+        fmt::format("{} turns only: the intervals are wide by Student's t with {} "
+                    "degrees of freedom",
+                    static_cast<int>(out.turns), static_cast<int>(out.dof)));
+}
+
+/// Fits, finds the missed counts, removes them from `fixes` and fits again, until there are none.
+Result<EncoderRound> without_slips(const EncoderRecording& recording,
+                                   const EncoderOptions& options,
+                                   signal::AngleFixes& fixes,
+                                   EncoderCalibration& out) {
+  // The first fit is bent by the slips; few rounds find them all.
+  constexpr int most_rounds = 6;
+  auto round = one_round(recording, fixes, options);
+  for (int n = 0; n < most_rounds && round; ++n) {
+    const auto found = signal::find_count_slips(round->offsets.time_s, round->offsets.offset_rad,
+                                                recording.step_rad);
+    if (found.empty()) break;
+    if (static_cast<double>(out.missed.size() + found.size()) > round->turns) {
+      out.notes.emplace_back(
+          "the encoder departs from gravity more often than once a turn: these are not missed "
+          "counts, or the wheel does not turn as its accelerometers do; none is removed");
+      out.missed.clear();
+      fixes = recording.encoder;
+      return one_round(recording, fixes, options);
+    }
+    signal::remove_slips(found, recording.step_rad, fixes);
+    out.missed.insert(out.missed.end(), found.begin(), found.end());
+    round = one_round(recording, fixes, options);
+  }
+  std::ranges::sort(out.missed, {}, &signal::CountSlip::time_s);
+  return round;
+}
+
+void conclude(const EncoderRecording& recording, EncoderRound round, EncoderCalibration& out) {
+  out.turns = round.turns;
+  out.samples = round.rows.row.size();
+  out.blocks = round.rows.blocks;
+  out.dof = static_cast<double>(out.blocks) - 1.0;
+  out.iterations = round.fit.iterations;
+  out.converged = round.fit.converged;
+  std::vector<double> speeds = round.rows.shown.speed_radps;
+  for (double& speed : speeds) speed = std::abs(speed);
+  out.speed_min_radps = *quantile(speeds, 0.01);
+  out.speed_max_radps = *quantile(speeds, 0.99);
+  add_encoder_results(recording, round.fit, out.dof, out);
+  out.detectable_counts = signal::detectable_counts(round.offsets.offset_rad, recording.step_rad);
+  out.offset_time_s = std::move(round.offsets.time_s);
+  out.offset_angle_rad = std::move(round.offsets.angle_rad);
+  out.offset_rad = std::move(round.offsets.offset_rad);
+  out.fitted_rad = std::move(round.offsets.fitted_rad);
+}
+
+}  // namespace
+
+Result<EncoderCalibration> calibrate_encoder(const EncoderRecording& recording,
+                                             const EncoderOptions& given) {
+  if (const Status fits = check_recording(recording); !fits) return fits.error();
+  EncoderCalibration out;
+  out.step_rad = recording.step_rad;
+  EncoderOptions options = given;
+  signal::AngleFixes fixes = recording.encoder;
+  auto round = without_slips(recording, options, fixes, out);
+  if (!round) return round.error();
+  constexpr double beyond_prior = 3.0;
+  if (const double shown = nonlinearity_shown(round->fit, encoder::layout_of(recording));
+      shown > beyond_prior) {
+    options.nonlinearity *= shown;
+    round = one_round(recording, fixes, options);
+    if (!round) return round.error();
+  }
+  out.nonlinearity = options.nonlinearity;
+  conclude(recording, std::move(round).value(), out);
+  add_notes(recording, given, out);
+  return out;
+}
+
+}  // namespace proofmass::calibrate
