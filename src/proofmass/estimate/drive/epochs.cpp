@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/drive/fit.hpp"
+
+namespace proofmass::estimate::drive {
+namespace {
+
+constexpr double step_s = 0.1;
+constexpr double most_epochs = 12000.0;
+constexpr double still_radps = 0.03;  // of every wheel: the vehicle stands
+constexpr double steering_mps = 0.5;  // slower, the steering angle is not that of the path
+// The smoother's angle errors are correlated over some epochs, the filter takes them as white.
+constexpr double angle_inflation = 2.0, least_angle_std_rad = 0.003;
+
+void add_wheel(const Trace& trace, double offset_s, std::size_t wheel, std::vector<Epoch>& epochs) {
+  const double first = at_time(trace.time_s, trace.angle_rad, epochs.front().time_s + offset_s);
+  for (Epoch& epoch : epochs) {
+    const double t = epoch.time_s + offset_s;
+    epoch.angle_rad[wheel] = missing;
+    if (t < trace.time_s.front() || t > trace.time_s.back()) continue;
+    epoch.angle_rad[wheel] = at_time(trace.time_s, trace.angle_rad, t) - first;
+    epoch.angle_std_rad[wheel] = std::max(
+        least_angle_std_rad, angle_inflation * at_time(trace.time_s, trace.angle_std_rad, t));
+    epoch.angle_rate_radps[wheel] = at_time(trace.time_s, trace.speed_radps, t);
+  }
+}
+
+void add_yaw(const Trace& trace, double offset_s, std::size_t gyro, std::vector<Epoch>& epochs) {
+  if (trace.yaw_rad.empty()) return;
+  const double first = at_time(trace.time_s, trace.yaw_rad, epochs.front().time_s + offset_s);
+  for (Epoch& epoch : epochs) {
+    const double t = epoch.time_s + offset_s;
+    if (t < trace.time_s.front() || t > trace.time_s.back()) continue;
+    epoch.yaw_rad[gyro] = at_time(trace.time_s, trace.yaw_rad, t) - first;
+  }
+}
+
+// Direction of travel in the step to each epoch. Standing wheels add no noise to the yaw.
+void add_direction(const Recorded& recorded, const Vehicle& vehicle, std::vector<Epoch>& epochs) {
+  for (std::size_t k = 0; k < epochs.size(); ++k) {
+    Epoch& epoch = epochs[k];
+    double sum = 0.0, fastest = 0.0, speed_mps = 0.0;
+    for (std::size_t i = 0; i < recorded.wheels.size(); ++i) {
+      const double rate = k == 0 ? epoch.angle_rate_radps[i]
+                                 : (epoch.angle_rad[i] - epochs[k - 1].angle_rad[i]) / epoch.dt_s;
+      if (std::isnan(rate)) continue;
+      sum += rate;
+      fastest = std::max(fastest, std::abs(rate));
+      speed_mps +=
+          std::abs(rate) * vehicle.radius_m[i] / static_cast<double>(recorded.wheels.size());
+    }
+    epoch.direction = fastest < still_radps ? 0 : sum < 0.0 ? -1 : 1;
+    epoch.turns = speed_mps > steering_mps;
+    if (epoch.direction == 0) continue;
+    for (std::size_t i = 0; i < recorded.wheels.size(); ++i)
+      epoch.yaw_walk_rad2[i] = recorded.wheels[i].yaw_walk_rad2ps * epoch.dt_s;
+    if (recorded.frame)
+      epoch.yaw_walk_rad2[most_drive_wheels] = recorded.frame->yaw_walk_rad2ps * epoch.dt_s;
+  }
+}
+
+// Each fix at its nearest epoch, one at most.
+void add_fixes(const LocalFixes& fixes, double offset_s, std::vector<Epoch>& epochs) {
+  const double begin = epochs.front().time_s;
+  const double step = epochs.size() > 1 ? epochs[1].time_s - begin : step_s;
+  for (std::size_t j = 0; j < fixes.time_s.size(); ++j) {
+    const double index = std::round((fixes.time_s[j] - offset_s - begin) / step);
+    if (!(index >= 0.0) || index >= static_cast<double>(epochs.size())) continue;
+    Epoch& epoch = epochs[static_cast<std::size_t>(index)];
+    if (!std::isnan(epoch.fix_east_m)) continue;
+    epoch.fix_east_m = fixes.east_m[j];
+    epoch.fix_north_m = fixes.north_m[j];
+    epoch.fix_variance_m2 = 0.0;
+    epoch.fix_after_s = fixes.time_s[j] - epoch.time_s;
+  }
+}
+
+}  // namespace
+
+std::vector<Epoch> epochs_of(const Recorded& recorded, const Vehicle& vehicle) {
+  const double span_s = recorded.end_s - recorded.start_s;
+  const double step = std::max(step_s, span_s / most_epochs);
+  const auto count = static_cast<std::size_t>(span_s / step) + 1;
+  std::vector<Epoch> epochs(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    epochs[k].time_s = recorded.start_s + static_cast<double>(k) * step;
+    epochs[k].dt_s = k == 0 ? 0.0 : step;
+    epochs[k].angle_rad.fill(missing);
+    epochs[k].yaw_rad.fill(missing);
+  }
+  const auto offset_of = [&](std::size_t sensor) {
+    return vehicle.offset_s[static_cast<std::size_t>(vehicle.clock[sensor])];
+  };
+  for (std::size_t i = 0; i < recorded.wheels.size(); ++i) {
+    add_wheel(recorded.wheels[i], offset_of(i), i, epochs);
+    add_yaw(recorded.wheels[i], offset_of(i), i, epochs);
+  }
+  if (recorded.frame)
+    add_yaw(*recorded.frame, offset_of(most_drive_wheels), most_drive_wheels, epochs);
+  add_direction(recorded, vehicle, epochs);
+  if (recorded.fixes)
+    add_fixes(*recorded.fixes, vehicle.offset_s[static_cast<std::size_t>(vehicle.fix_clock)],
+              epochs);
+  return epochs;
+}
+
+}  // namespace proofmass::estimate::drive
