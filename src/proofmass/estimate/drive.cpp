@@ -238,12 +238,6 @@ void set_radii(const std::vector<DriveWheel>& wheels, Gathered& all) {
   }
 }
 
-bool has_yaw(const Recorded& recorded) {
-  return recorded.frame.has_value() ||
-         std::ranges::any_of(recorded.wheels,
-                             [](const Trace& trace) { return !trace.yaw_rad.empty(); });
-}
-
 Result<Gathered> gather(const std::vector<DriveWheel>& wheels,
                         const std::optional<DriveFrame>& frame,
                         const std::optional<GnssFixes>& fixes,
@@ -277,15 +271,8 @@ Result<Gathered> gather(const std::vector<DriveWheel>& wheels,
     return Error{Errc::not_observable, "the wheels' recordings have no three seconds in common"};
   if (frame)
     if (Status status = add_frame(*frame, clocks, all, solution); !status) return status.error();
-  // Without a yaw rate the first path is not good enough to be brought onto the fixes.
-  if (fixes && has_yaw(recorded)) {
+  if (fixes)
     if (Status status = add_fixes(*fixes, clocks, all, solution); !status) return status.error();
-  } else if (fixes) {
-    solution.notes.push_back({Severity::warning,
-                              fixes->name +
-                                  ": fixes are used only together with a gyroscope on a wheel or "
-                                  "the frame: not used"});
-  }
   set_radii(wheels, all);
   return all;
 }
@@ -341,20 +328,24 @@ Fitted fit_best(const std::vector<DriveWheel>& wheels,
                 DriveSolution& solution) {
   constexpr double clear = 5.0;  // ln of the likelihood ratio
   const std::vector<Steered> choices = assignments(wheels);
-  std::optional<Fitted> best;
-  double first = 0.0;
+  Steered chosen = choices.front();
+  double first = 0.0, best = -INFINITY;
   for (const Steered& steered : choices) {
+    if (choices.size() == 1) break;
     set_geometry(wheels, options, steered, all.setting);
-    Fitted fitted = fit_path(all.recorded, all.setting, options.progress);
-    if (!best) first = fitted.pass.log_likelihood;
-    if (!best || fitted.pass.log_likelihood > best->pass.log_likelihood + clear)
-      best = std::move(fitted);
+    const double now =
+        fit_path(all.recorded, all.setting, Effort::comparison, {}).pass.log_likelihood;
+    if (!std::isfinite(best)) first = now;
+    if (now > best + (std::isfinite(best) ? clear : 0.0)) {
+      best = now;
+      chosen = steered;
+    }
   }
-  const Steered& chosen = best->setting.vehicle.steered;
-  if (choices.size() > 1 && best->pass.log_likelihood > first)
+  set_geometry(wheels, options, chosen, all.setting);
+  if (choices.size() > 1 && best > first)
     solution.notes.push_back({Severity::info, "the motion shows that " + names_of(wheels, chosen) +
                                                   " are on the steered axle; --front states it"});
-  return std::move(*best);
+  return fit_path(all.recorded, all.setting, Effort::full, options.progress);
 }
 
 Known known_of(const std::vector<DriveWheel>& wheels,
@@ -366,7 +357,7 @@ Known known_of(const std::vector<DriveWheel>& wheels,
   known.scale = fixes || std::ranges::any_of(wheels, [](const DriveWheel& wheel) {
                   return wheel.circumference_m.has_value();
                 });
-  known.yaw = has_yaw(all.recorded);
+  known.yaw = all.recorded.has_yaw();
   known.both_sides = std::ranges::any_of(
       wheels, [&](const DriveWheel& wheel) { return wheel.side != wheels.front().side; });
   known.track = options.track_m.has_value() || fixes || known.yaw;

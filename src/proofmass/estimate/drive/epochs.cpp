@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
-#include "proofmass/core/statistics.hpp"
+#include "proofmass/core/units.hpp"
 #include "proofmass/estimate/drive/fit.hpp"
 
 namespace proofmass::estimate::drive {
@@ -54,6 +55,8 @@ void add_direction(const Recorded& recorded, const Vehicle& vehicle, std::vector
     }
     epoch.direction = fastest < still_radps ? 0 : sum < 0.0 ? -1 : 1;
     epoch.turns = speed_mps > steering_mps;
+    if (k > 0)
+      epoch.moving_s = epochs[k - 1].moving_s + (epoch.direction == 0 ? 0.0 : epoch.dt_s);
     if (epoch.direction == 0) continue;
     for (std::size_t i = 0; i < recorded.wheels.size(); ++i)
       epoch.yaw_walk_rad2[i] = recorded.wheels[i].yaw_walk_rad2ps * epoch.dt_s;
@@ -105,6 +108,42 @@ std::vector<Epoch> epochs_of(const Recorded& recorded, const Vehicle& vehicle) {
     add_fixes(*recorded.fixes, vehicle.offset_s[static_cast<std::size_t>(vehicle.fix_clock)],
               epochs);
   return epochs;
+}
+
+void add_course(const Vehicle& vehicle, std::vector<Epoch>& epochs) {
+  constexpr double chord_m = 4.0, walk_rad2ps = 0.02;
+  struct Point {
+    std::size_t epoch;
+    double course_rad;
+  };
+  std::vector<Point> points;
+  std::optional<std::size_t> from;
+  double rolled_m = 0.0;
+  for (std::size_t k = 1; k < epochs.size(); ++k) {
+    rolled_m += std::abs(epochs[k].angle_rad[0] - epochs[k - 1].angle_rad[0]) * vehicle.radius_m[0];
+    if (std::isnan(epochs[k].fix_east_m) || epochs[k].direction == 0) continue;
+    if (from && rolled_m < chord_m) continue;
+    if (from) {
+      const Epoch& start = epochs[*from];
+      const double sign = epochs[k].direction;
+      const double course = std::atan2(sign * (epochs[k].fix_north_m - start.fix_north_m),
+                                       sign * (epochs[k].fix_east_m - start.fix_east_m));
+      const double before = points.empty() ? course : points.back().course_rad;
+      points.push_back({(*from + k) / 2, before + std::remainder(course - before, rad_per_turn)});
+    }
+    from = k;
+    rolled_m = 0.0;
+  }
+  if (points.empty()) return;
+  std::vector<double> times, courses;
+  for (const Point& point : points) {
+    times.push_back(epochs[point.epoch].time_s);
+    courses.push_back(point.course_rad - points.front().course_rad);
+  }
+  for (Epoch& epoch : epochs) {
+    epoch.yaw_rad[most_drive_wheels] = at_time(times, courses, epoch.time_s);
+    epoch.yaw_walk_rad2[most_drive_wheels] = epoch.direction == 0 ? 0.0 : walk_rad2ps * epoch.dt_s;
+  }
 }
 
 }  // namespace proofmass::estimate::drive

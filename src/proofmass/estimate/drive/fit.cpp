@@ -15,6 +15,8 @@ using State = Mat<at::states>;
 constexpr double gyro_scale_std = 0.015;  // of MEMS gyroscopes as delivered
 constexpr double steer_start_std_rad = 0.5;
 constexpr int relinearisations = 4;
+constexpr double loose = 100.0, steering_psd = 0.1;
+constexpr double course_std_rad = 0.3;
 
 Gaussian<at::states> prior_of(const Recorded& recorded, const Setting& setting) {
   Gaussian<at::states> prior;
@@ -32,11 +34,12 @@ Gaussian<at::states> prior_of(const Recorded& recorded, const Setting& setting) 
     if (recorded.wheels[n].yaw_rad.empty()) continue;
     set(at::drift + i, 0.0, vehicle.steered[n] ? steer_start_std_rad : 0.001);
     set(at::yaw_scale + i, 0.0, gyro_scale_std);
+    set(at::rate_bias + i, 0.0, recorded.wheels[n].yaw_bias_std_radps);
   }
   if (recorded.frame) {
     set(at::drift + most_wheels, 0.0, 0.001);
     set(at::yaw_scale + most_wheels, 0.0, gyro_scale_std);
-    set(at::frame_bias, 0.0, recorded.frame->yaw_bias_std_radps);
+    set(at::rate_bias + most_wheels, 0.0, recorded.frame->yaw_bias_std_radps);
   }
   set(at::track, setting.track_m.value, setting.track_m.std);
   set(at::base, setting.base_m.value, setting.base_m.std);
@@ -99,7 +102,11 @@ Chart chart_of(const std::vector<Epoch>& epochs, const std::vector<State>& path)
   return chart;
 }
 
-// Densities of speed and yaw rate, from the changes that the recordings show.
+// Densities of the random walks of speed and yaw rate: those of the changes that the recordings
+// show, times `loose`. A density that fits the changes makes their size at the nominal scale the
+// most probable one, and so determines the scale: that of the path came out 1 % small beside
+// fixes. A hundredfold density has no say, and the measurements are precise enough to need no
+// smoothing. Where nothing measures turns, the yaw rate has the density of a car's steering.
 void set_motion_noise(const std::vector<Epoch>& epochs, const Vehicle& vehicle, Noise& noise) {
   double speed2 = 0.0, rate2 = 0.0, speeds = 0.0, rates = 0.0;
   for (std::size_t k = 2; k < epochs.size(); ++k) {
@@ -119,8 +126,12 @@ void set_motion_noise(const std::vector<Epoch>& epochs, const Vehicle& vehicle, 
       rates += 1.0;
     }
   }
-  if (speeds > 0.0) noise.speed_psd = std::max(0.05, 2.0 * speed2 / speeds);
-  noise.rate_psd = rates > 0.0 ? std::max(0.01, 2.0 * rate2 / rates) : 0.25;
+  if (speeds > 0.0) noise.speed_psd = loose * std::max(0.05, speed2 / speeds);
+  const bool both_sides = std::ranges::find(vehicle.side, 1.0) != vehicle.side.end() &&
+                          std::ranges::find(vehicle.side, -1.0) != vehicle.side.end();
+  noise.rate_psd = rates > 0.0  ? loose * std::max(0.01, rate2 / rates)
+                   : both_sides ? loose * steering_psd
+                                : steering_psd;
 }
 
 // The noise parameters whose probability given the recordings is highest, on a logarithmic grid
@@ -186,9 +197,25 @@ void set_in_path(const Gaussian<at::states>& prior, std::vector<State>& path) {
   for (State& x : path) x.segment<3>(at::bearing) = prior.mean.segment<3>(at::bearing);
 }
 
+// The first path, without the fixes' positions. Where nothing else measures turns, their course is
+// that of the frame: the filter is linearised about this path, and a wrong one would not converge.
+Pass first_pass(const Model& model, const Gaussian<at::states>& prior, bool use_course) {
+  if (!use_course) return run(model, prior, {}, true);
+  std::vector<Epoch> epochs = *model.epochs;
+  add_course(model.vehicle, epochs);
+  Gaussian<at::states> own = prior;
+  own.cov(at::drift + most_wheels, at::drift + most_wheels) = square(course_std_rad);
+  Model with_course = model;
+  with_course.epochs = &epochs;
+  return run(with_course, own, {}, true);
+}
+
 }  // namespace
 
-Fitted fit_path(const Recorded& recorded, const Setting& setting, const Progress& progress) {
+Fitted fit_path(const Recorded& recorded,
+                const Setting& setting,
+                Effort effort,
+                const Progress& progress) {
   Fitted fitted{.setting = setting, .noise = {}, .pass = {}};
   Vehicle& vehicle = fitted.setting.vehicle;
   vehicle.offset_s = recorded.offset_s;
@@ -196,20 +223,21 @@ Fitted fit_path(const Recorded& recorded, const Setting& setting, const Progress
   Model model{.epochs = &epochs, .vehicle = vehicle, .noise = {}, .with_fixes = false};
   set_motion_noise(epochs, vehicle, model.noise);
   Gaussian<at::states> prior = prior_of(recorded, setting);
-  fitted.pass = run(model, prior, {}, true);
+  fitted.pass = first_pass(model, prior, recorded.fixes && !recorded.has_yaw());
   if (recorded.fixes) {
     model.with_fixes = true;
     const Chart chart = chart_of(epochs, fitted.pass.path);
     open_chart(chart.bearing, chart.origin, model.noise.wander_std_m, prior);
     set_in_path(prior, fitted.pass.path);
   }
-  for (int i = 0; i < relinearisations; ++i) {
-    if (progress) progress("path", static_cast<double>(i) / relinearisations);
-    if (i == 1) NoiseSearch(model, prior, fitted.pass.path).search();
+  const int passes = effort == Effort::comparison ? 2 : relinearisations;
+  for (int i = 0; i < passes; ++i) {
+    if (progress) progress("path", static_cast<double>(i) / passes);
+    if (i == 1 && effort == Effort::full) NoiseSearch(model, prior, fitted.pass.path).search();
     for (const int s : {at::wander, at::wander + 1})
       if (model.with_fixes) prior.cov(s, s) = square(model.noise.wander_std_m);
     fitted.pass = run(model, prior, fitted.pass.path, true);
-    if (i + 1 == relinearisations) break;
+    if (i + 1 == passes) break;
     for (std::size_t c = 1; c < most_clocks; ++c)
       vehicle.offset_s[c] = fitted.pass.end.mean(at::clock + static_cast<int>(c));
     epochs = epochs_of(recorded, vehicle);

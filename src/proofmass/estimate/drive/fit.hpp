@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,10 @@ struct Recorded {
   std::optional<Trace> frame;
   std::optional<LocalFixes> fixes;  ///< stamps in seconds of their clock
   std::array<double, most_clocks> offset_s{}, offset_std_s{};
+  [[nodiscard]] bool has_yaw() const {
+    return frame.has_value() ||
+           std::ranges::any_of(wheels, [](const Trace& trace) { return !trace.yaw_rad.empty(); });
+  }
   double start_s = 0.0, end_s = 0.0;  ///< common to all wheels, on the first wheel's clock
 };
 
@@ -32,13 +37,21 @@ struct Fitted {
   Pass pass;
 };
 
-/// Path by filter and smoother, relinearised until the clock offsets no longer move, with the
-/// noise parameters that the recordings make most probable.
+/// How much is spent on a path: enough to compare hypotheses, or until the clock offsets no longer
+/// move, with the noise parameters that the recordings make most probable.
+enum class Effort { comparison, full };
+
+/// Path by filter and relinearised smoother.
 [[nodiscard]] Fitted fit_path(const Recorded& recorded,
                               const Setting& setting,
+                              Effort effort,
                               const Progress& progress);
 
 /// The measurements of each epoch, with each trace interpolated at vehicle.offset_s.
 [[nodiscard]] std::vector<Epoch> epochs_of(const Recorded& recorded, const Vehicle& vehicle);
+
+/// Adds the course of the fixes as the yaw of the frame: directions of chords of some metres, while
+/// the vehicle moves.
+void add_course(const Vehicle& vehicle, std::vector<Epoch>& epochs);
 
 }  // namespace proofmass::estimate::drive

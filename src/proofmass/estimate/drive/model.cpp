@@ -161,10 +161,8 @@ void Model::measure_yaw(const State& x, const Epoch& now, Rows& out) const {
     for (int i = 0; i < 2; ++i) row.h(at::speed + i) += gain * wheel.by_steer(i);
     row.h(at::track) = gain * wheel.by_steer(2);
     row.h(at::base) = gain * wheel.by_steer(3);
-    if (j == most_gyros - 1) {
-      row.predicted += x(at::frame_bias) * now.time_s;
-      row.h(at::frame_bias) = now.time_s;
-    }
+    row.predicted += x(at::rate_bias + j) * now.moving_s;
+    row.h(at::rate_bias + j) = now.moving_s;
   }
 }
 

@@ -18,7 +18,8 @@
 //     σ  += v h · direction                              distance travelled
 //     Sᵢ += h √((v − ω c)² + (ω b)²) · sgn(v − ω c) + slip    distance that wheel i rolled
 //     zᵢ  = Sᵢ e^(−ρᵢ) / rᵢ − θ̇ᵢ τ                        angle of wheel i, whose clock is τ ahead
-//     z_j = (1 + k_j) (ψ + δ_j) + d_j + b t               integrated yaw rate of gyroscope j
+//     z_j = (1 + k_j) (ψ + δ_j) + d_j + b_j t_m           integrated yaw rate of gyroscope j, with
+//                                                        t_m the time in motion so far
 //     δ   = atan(ω b / (v − ω c))                         steering angle (0 if unsteered)
 //     z_f = p₀ + R(ψ₀) (p + R(ψ) a) + wander              fix, with the antenna at a
 //
@@ -38,8 +39,8 @@ inline constexpr int track = wander + 2, base = track + 1;
 inline constexpr int dynamic = base + 1;
 inline constexpr int drift = dynamic;  // for each gyroscope
 inline constexpr int yaw_scale = drift + most_gyros;
-inline constexpr int frame_bias = yaw_scale + most_gyros;
-inline constexpr int radius = frame_bias + 1;         // ρ, for each wheel
+inline constexpr int rate_bias = yaw_scale + most_gyros;
+inline constexpr int radius = rate_bias + most_gyros;         // ρ, for each wheel
 inline constexpr int antenna = radius + most_wheels;  // forward, left
 inline constexpr int bearing = antenna + 2;           // ψ₀
 inline constexpr int origin = bearing + 1;            // p₀: east, north
@@ -52,6 +53,7 @@ inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 /// Measurements at one instant of the first wheel's clock; NaN where there is none.
 struct Epoch {
   double time_s = 0.0, dt_s = 0.0;
+  double moving_s = 0.0;  ///< time in motion so far
   int direction = 0;   ///< +1 forwards, −1 backwards, 0 standing
   bool turns = false;  ///< the vehicle moves fast enough for a steering angle
   std::array<double, most_drive_wheels> angle_rad{}, angle_std_rad{}, angle_rate_radps{};

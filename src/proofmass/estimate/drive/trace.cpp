@@ -7,6 +7,7 @@
 
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/core/units.hpp"
 
 namespace proofmass::estimate::drive {
 namespace {
@@ -14,7 +15,11 @@ namespace {
 constexpr double standing_radps = 0.05;      // slower, a wheel is taken to stand
 constexpr double impossible_radps = 1000.0;  // of a gyroscope
 constexpr double least_walk_rad2ps = 1e-7;   // 1.1 °/√h: an ordinary MEMS gyroscope
-constexpr double block_s = 1.0;
+constexpr double block_s = 1.0, block_turns = 2.0;
+// Yaw rate bias that is left after rotation by the wheel's angle: sensitivity of the gyroscope to
+// acceleration, whose reaction of gravity turns as the yaw does (0.02 °/s per g); of a frame: the
+// change of its bias since the last rest.
+constexpr double wheel_bias_std_radps = 0.015 * rad_per_deg, frame_bias_std_radps = 0.02 * rad_per_deg;
 
 using Three = Eigen::Vector3d;
 
@@ -125,32 +130,39 @@ Spin spin_axis_of(const Spinning& rows) {
   return {c.row(0).transpose(), c.row(1).transpose()};
 }
 
-// Sum of squares of a noise's means over blocks of a second: the random walk of its integral.
+// Random walk that a rate's noise adds to its integral, from differences of the means of successive
+// blocks: what varies slowly, such as the roll of the road, is not noise.
+// Source: D. W. Allan, Proc. IEEE 54 (1966) 221.
 class WalkFromBlocks {
  public:
   void add(double value, double step_s) {
     sum_ += value * step_s;
     time_s_ += step_s;
-    if (time_s_ < block_s) return;
-    blocks_.push_back(sum_ * sum_ / time_s_);
+  }
+  [[nodiscard]] double time_s() const { return time_s_; }
+  void close_block() {
+    if (!(time_s_ > 0.0)) return;
+    const double mean = sum_ / time_s_;
+    if (before_s_ > 0.0) {
+      squares_ += square(mean - before_) / (1.0 / time_s_ + 1.0 / before_s_);
+      pairs_ += 1.0;
+    }
+    before_ = mean;
+    before_s_ = time_s_;
     sum_ = time_s_ = 0.0;
   }
   [[nodiscard]] double rad2ps() const {
-    double total = 0.0;
-    for (const double block : blocks_) total += block;
-    return blocks_.empty()
-               ? least_walk_rad2ps
-               : std::max(least_walk_rad2ps, total / static_cast<double>(blocks_.size()));
+    return pairs_ < 1.0 ? least_walk_rad2ps : std::max(least_walk_rad2ps, squares_ / pairs_);
   }
 
  private:
-  std::vector<double> blocks_;
-  double sum_ = 0.0, time_s_ = 0.0;
+  double sum_ = 0.0, time_s_ = 0.0, before_ = 0.0, before_s_ = 0.0, squares_ = 0.0, pairs_ = 0.0;
 };
 
 // Yaw from the in-plane axes: rotated by the wheel's angle they give the rates about the upward
 // direction, which is yaw, and about the direction of travel, which is noise and the axle's roll.
-// The second measures the first's noise. A wheel that stands has no yaw.
+// The second measures the first's noise, over blocks of two turns, in which the modulation by the
+// wheel's angle averages out. A wheel that stands has no yaw.
 // Source: X. Niu, Y. Wu, J. Kuang, Wheel-INS (2021), section III.
 void add_yaw(const WheelSensor& sensor, Trace& trace) {
   const Spinning rows = spinning_rows(sensor, trace);
@@ -168,7 +180,7 @@ void add_yaw(const WheelSensor& sensor, Trace& trace) {
   trace.spin_tilt_rad = std::acos(std::min(1.0, axis.cwiseAbs().maxCoeff()));
   std::vector<double> yaw(rows.time_s.size(), 0.0);
   WalkFromBlocks walk;
-  double before = 0.0;
+  double before = 0.0, block_from = 0.0;
   for (std::size_t k = 0; k < yaw.size(); ++k) {
     const Three up =
         upward.by_sin * std::sin(rows.angle[k]) + upward.by_cos * std::cos(rows.angle[k]);
@@ -179,10 +191,15 @@ void add_yaw(const WheelSensor& sensor, Trace& trace) {
     const double step_s = k > 0 ? rows.time_s[k] - rows.time_s[k - 1] : 0.0;
     if (k > 0) yaw[k] = yaw[k - 1] + 0.5 * (before + rate) * step_s;
     if (!stands && step_s > 0.0 && step_s < 0.2) walk.add(left.dot(cross(axis, level_up)), step_s);
+    if (std::abs(rows.angle[k] - block_from) >= block_turns * rad_per_turn) {
+      walk.close_block();
+      block_from = rows.angle[k];
+    }
     before = rate;
   }
   for (const double t : trace.time_s) trace.yaw_rad.push_back(at_time(rows.time_s, yaw, t));
   trace.yaw_walk_rad2ps = walk.rad2ps();
+  trace.yaw_bias_std_radps = wheel_bias_std_radps;
 }
 
 Result<Trace> trace_encoder(const DriveWheel& wheel) {
@@ -303,6 +320,7 @@ Result<Trace> trace_frame(const WheelSensor& sensor, const std::vector<Stretch>&
     const double step_s = trace.time_s.empty() ? 0.0 : t - trace.time_s.back();
     if (!trace.time_s.empty() && step_s <= 0.0) continue;
     if (stands && step_s > 0.0 && step_s < 0.2) walk.add(rate, step_s);
+    if (walk.time_s() >= block_s) walk.close_block();
     const double so_far = trace.yaw_rad.empty() ? 0.0 : trace.yaw_rad.back();
     trace.time_s.push_back(t);
     trace.yaw_rad.push_back(so_far + 0.5 * step_s * (before + (stands ? 0.0 : rate)));
@@ -310,7 +328,7 @@ Result<Trace> trace_frame(const WheelSensor& sensor, const std::vector<Stretch>&
   }
   // Roll and pitch in motion tilt the axis by a degree or so; vibration adds to the walk at rest.
   trace.yaw_walk_rad2ps = 4.0 * walk.rad2ps();
-  trace.yaw_bias_std_radps = 0.02 * std::numbers::pi / 180.0;
+  trace.yaw_bias_std_radps = frame_bias_std_radps;
   return trace;
 }
 

@@ -16,7 +16,7 @@ struct Trace {
   /// includes its steering.
   std::vector<double> yaw_rad;
   double yaw_walk_rad2ps = 0.0;     ///< variance that the noise of the yaw rate adds in a second
-  double yaw_bias_std_radps = 0.0;  ///< of a frame: constant bias left by the rests
+  double yaw_bias_std_radps = 0.0;  ///< constant part of its error, while the vehicle moves
   double spin_tilt_rad = 0.0;       ///< of the gyroscope's spin axis against the sensor's nearest
   std::optional<Uncertain> turns;
   std::vector<Note> notes;
