@@ -1,5 +1,5 @@
-// A car's wheels with position fixes that wander: the line through them is a quarter too long. Wheels
-// 1 and 3 are in front, 1 and 2 on the right.
+// A car's wheels with position fixes that wander: the line through them is a quarter too long.
+// Wheels 1 and 3 are in front, 1 and 2 on the right.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,8 +30,9 @@ estimate::DriveWheel wheel_of(const char* trial, int number) {
   wheel.steered = number % 2 == 1;
   wheel.clock = number <= 2 ? 0 : 1;
   constexpr double first_s = 2167.0;
-  const double begin_s =
-      wheel.clock == 0 ? 1e-9 * static_cast<double>(recording.time.start_ns.value()) - first_s : 0.0;
+  const double begin_s = wheel.clock == 0
+                             ? 1e-9 * static_cast<double>(recording.time.start_ns.value()) - first_s
+                             : 0.0;
   for (std::size_t k = 0; k < recording.samples(); ++k)
     wheel.sensor.time_s.push_back(begin_s + recording.time.at(k));
   const std::array accel{"Acc_X", "Acc_Y", "Acc_Z"}, rate{"Gyr_X", "Gyr_Y", "Gyr_Z"};
@@ -64,8 +65,7 @@ TEST(CarDrive, DoesNotFollowTheWanderOfTheFixes) {
   if (!std::filesystem::exists(folder_of("trial06"))) GTEST_SKIP() << absent(folder_of("trial06"));
   std::vector<estimate::DriveWheel> wheels;
   for (const int number : {1, 2, 3}) wheels.push_back(wheel_of("trial06", number));
-  const auto solved =
-      estimate::estimate_drive(wheels, std::nullopt, fixes_of("trial06"), {});
+  const auto solved = estimate::estimate_drive(wheels, std::nullopt, fixes_of("trial06"), {});
   ASSERT_TRUE(solved.has_value()) << solved.error().message;
   ASSERT_TRUE(solved->distance_m);
   // The stamps are ten times too long, the line through the fixes a fifth.
@@ -82,8 +82,8 @@ TEST(CarDrive, DoesNotFollowTheWanderOfTheFixes) {
 
 TEST(CarDrive, GivesOneWheelItsHeadingByItsGyroscope) {
   if (!std::filesystem::exists(folder_of("trial10"))) GTEST_SKIP() << absent(folder_of("trial10"));
-  const auto solved = estimate::estimate_drive({wheel_of("trial10", 1)}, std::nullopt,
-                                               fixes_of("trial10"), {});
+  const auto solved =
+      estimate::estimate_drive({wheel_of("trial10", 1)}, std::nullopt, fixes_of("trial10"), {});
   ASSERT_TRUE(solved.has_value()) << solved.error().message;
   ASSERT_TRUE(solved->distance_m);
   EXPECT_NEAR(solved->distance_m->value, 190.5, 3.0);

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "cli/console.hpp"
-#include "motion/drive_input.hpp"
 #include "cli/exit_status.hpp"
 #include "cli/flags.hpp"
-#include "input/input.hpp"
 #include "cli/output.hpp"
+#include "input/input.hpp"
+#include "motion/drive_input.hpp"
 #include "proofmass/report/drive/report.hpp"
 #include "verb.hpp"
 

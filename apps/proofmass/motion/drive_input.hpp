@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "cli/common_flags.hpp"
+#include "input/wheel_input.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/estimate/drive.hpp"
-#include "input/wheel_input.hpp"
 
 // From the recordings of a vehicle to its wheels, frame and position fixes.
 namespace proofmass::app {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/drive/findings.hpp"
 #include "proofmass/estimate/drive/fit.hpp"
@@ -246,10 +247,14 @@ Result<Gathered> gather(const std::vector<DriveWheel>& wheels,
   Gathered all;
   Clocks clocks;
   all.setting.vehicle.wheels = static_cast<int>(wheels.size());
+  std::vector<std::optional<Result<Trace>>> traces(wheels.size());
+  in_parallel(wheels.size(), options.progress, [&](std::size_t i, const Progress& shown) {
+    WheelOptions own = options.wheel;
+    own.progress = shown;
+    traces[i] = trace_wheel(wheels[i], own);
+  });
   for (std::size_t i = 0; i < wheels.size(); ++i) {
-    if (options.progress)
-      options.progress("wheels", static_cast<double>(i) / static_cast<double>(wheels.size()));
-    auto trace = trace_wheel(wheels[i], options.wheel);
+    Result<Trace>& trace = *traces[i];
     if (!trace) return trace.error();
     for (const Note& note : trace->notes) solution.notes.push_back(note);
     all.recorded.wheels.push_back(std::move(trace).value());
@@ -328,13 +333,14 @@ Fitted fit_best(const std::vector<DriveWheel>& wheels,
                 DriveSolution& solution) {
   constexpr double clear = 5.0;  // ln of the likelihood ratio
   const std::vector<Steered> choices = assignments(wheels);
+  // A single wheel shows only by the fixes' noise that it steers: that noise must be estimated.
+  const Effort effort = choices.size() <= 2 ? Effort::full : Effort::comparison;
   Steered chosen = choices.front();
   double first = 0.0, best = -INFINITY;
   for (const Steered& steered : choices) {
     if (choices.size() == 1) break;
     set_geometry(wheels, options, steered, all.setting);
-    const double now =
-        fit_path(all.recorded, all.setting, Effort::comparison, {}).pass.log_likelihood;
+    const double now = fit_path(all.recorded, all.setting, effort, {}).pass.log_likelihood;
     if (!std::isfinite(best)) first = now;
     if (now > best + (std::isfinite(best) ? clear : 0.0)) {
       best = now;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/estimate/drive/fit.hpp"
 
@@ -55,8 +56,7 @@ void add_direction(const Recorded& recorded, const Vehicle& vehicle, std::vector
     }
     epoch.direction = fastest < still_radps ? 0 : sum < 0.0 ? -1 : 1;
     epoch.turns = speed_mps > steering_mps;
-    if (k > 0)
-      epoch.moving_s = epochs[k - 1].moving_s + (epoch.direction == 0 ? 0.0 : epoch.dt_s);
+    if (k > 0) epoch.moving_s = epochs[k - 1].moving_s + (epoch.direction == 0 ? 0.0 : epoch.dt_s);
     if (epoch.direction == 0) continue;
     for (std::size_t i = 0; i < recorded.wheels.size(); ++i)
       epoch.yaw_walk_rad2[i] = recorded.wheels[i].yaw_walk_rad2ps * epoch.dt_s;
@@ -108,6 +108,48 @@ std::vector<Epoch> epochs_of(const Recorded& recorded, const Vehicle& vehicle) {
     add_fixes(*recorded.fixes, vehicle.offset_s[static_cast<std::size_t>(vehicle.fix_clock)],
               epochs);
   return epochs;
+}
+
+void form_normal_points(const Vehicle& vehicle,
+                        const std::vector<Mat<at::states>>& path,
+                        double window_s,
+                        std::vector<Epoch>& epochs) {
+  const int clock = at::clock + vehicle.fix_clock;
+  const auto place = [&](std::size_t k, double late_s) {
+    const Mat<seen_states> now = seen(path[k]);
+    const double ahead_m = now(4) * late_s;
+    const double ahead = ahead_m + path[k](at::antenna), left = path[k](at::antenna + 1);
+    const double c = std::cos(now(2)), s = std::sin(now(2));
+    return Mat<2>(now(0) + path[k](at::origin) + c * ahead - s * left,
+                  now(1) + path[k](at::origin + 1) + s * ahead + c * left);
+  };
+  std::size_t k = 0;
+  while (k < epochs.size()) {
+    if (std::isnan(epochs[k].fix_east_m)) {
+      ++k;
+      continue;
+    }
+    const double until_s = epochs[k].time_s + window_s;
+    std::vector<std::size_t> members;
+    for (; k < epochs.size() && epochs[k].time_s < until_s; ++k)
+      if (!std::isnan(epochs[k].fix_east_m)) members.push_back(k);
+    std::vector<double> east, north;
+    double variance = 0.0;
+    for (const std::size_t j : members) {
+      Epoch& epoch = epochs[j];
+      const Mat<2> expected = place(j, epoch.fix_after_s - path[j](clock));
+      east.push_back(epoch.fix_east_m - expected(0));
+      north.push_back(epoch.fix_north_m - expected(1));
+      variance += epoch.fix_variance_m2 / static_cast<double>(members.size());
+      epoch.fix_east_m = epoch.fix_north_m = missing;
+    }
+    const std::size_t middle = members[members.size() / 2];
+    const Mat<2> expected = place(middle, 0.0);
+    epochs[middle].fix_east_m = expected(0) + median(east).value_or(0.0);
+    epochs[middle].fix_north_m = expected(1) + median(north).value_or(0.0);
+    epochs[middle].fix_variance_m2 = variance;
+    epochs[middle].fix_after_s = path[middle](clock);
+  }
 }
 
 void add_course(const Vehicle& vehicle, std::vector<Epoch>& epochs) {

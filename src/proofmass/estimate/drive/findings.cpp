@@ -21,9 +21,7 @@ std::optional<Uncertain> clock_offset(const Gaussian<at::states>& end, int clock
   return clock == 0 ? Uncertain{} : state(end, at::clock + clock);
 }
 
-void add_series(const Fitted& fitted,
-                const std::vector<Epoch>& epochs,
-                DriveSeries& out) {
+void add_series(const Fitted& fitted, const std::vector<Epoch>& epochs, DriveSeries& out) {
   for (std::size_t k = 0; k < fitted.pass.path.size(); ++k) {
     const Mat<seen_states> now = seen(fitted.pass.path[k]);
     const auto& cov = fitted.pass.seen_cov[k];
@@ -154,7 +152,8 @@ void report_findings(const Recorded& recorded,
   if (!heading_known || !known.scale) return;
   if (heading.std > bent_position_rad) {
     solution.not_observable.emplace_back(
-        "end position: the uncertainty of the heading exceeds 17 degrees; a gyroscope, more precise "
+        "end position: the uncertainty of the heading exceeds 17 degrees; a gyroscope, more "
+        "precise "
         "circumferences or position fixes determine it");
     return;
   }

@@ -17,6 +17,8 @@ constexpr double steer_start_std_rad = 0.5;
 constexpr int relinearisations = 4;
 constexpr double loose = 100.0, steering_psd = 0.1;
 constexpr double course_std_rad = 0.3;
+// Without a yaw rate the shape of the path comes from the fixes, which must be dense.
+constexpr double normal_point_s = 5.0, course_point_s = 1.0;
 
 Gaussian<at::states> prior_of(const Recorded& recorded, const Setting& setting) {
   Gaussian<at::states> prior;
@@ -172,9 +174,9 @@ class NoiseSearch {
   };
   static constexpr std::array<Parameter, 4> parameters_{
       {{&Noise::slip_m_per_rtm, 0.004, 0.7, false},
-       {&Noise::fix_std_m, 0.3, 1.5, true},
-       {&Noise::wander_std_m, 1.0, 0.7, true},
-       {&Noise::wander_s, 30.0, 0.7, true}}};
+       {&Noise::fix_std_m, 0.15, 1.0, true},
+       {&Noise::wander_std_m, 0.7, 0.5, true},
+       {&Noise::wander_s, 30.0, 0.5, true}}};
 
   [[nodiscard]] double probability() const {
     Gaussian<at::states> prior = prior_;
@@ -230,9 +232,11 @@ Fitted fit_path(const Recorded& recorded,
     open_chart(chart.bearing, chart.origin, model.noise.wander_std_m, prior);
     set_in_path(prior, fitted.pass.path);
   }
+  const double window_s = recorded.has_yaw() ? normal_point_s : course_point_s;
   const int passes = effort == Effort::comparison ? 2 : relinearisations;
   for (int i = 0; i < passes; ++i) {
     if (progress) progress("path", static_cast<double>(i) / passes);
+    if (recorded.fixes) form_normal_points(vehicle, fitted.pass.path, window_s, epochs);
     if (i == 1 && effort == Effort::full) NoiseSearch(model, prior, fitted.pass.path).search();
     for (const int s : {at::wander, at::wander + 1})
       if (model.with_fixes) prior.cov(s, s) = square(model.noise.wander_std_m);

@@ -50,6 +50,16 @@ enum class Effort { comparison, full };
 /// The measurements of each epoch, with each trace interpolated at vehicle.offset_s.
 [[nodiscard]] std::vector<Epoch> epochs_of(const Recorded& recorded, const Vehicle& vehicle);
 
+/// Replaces the fixes by one for each `window_s`: the median of their distances from the path,
+/// added to the path in the middle. A receiver filters its fixes, so that their errors hardly
+/// change from one to the next: taken one by one, they would appear far more precise than they are
+/// over a minute. `path` has a state for each epoch. Source: A. T. Sinclair, Data Screening and
+/// Normal Point Formation (1997), for the term and use.
+void form_normal_points(const Vehicle& vehicle,
+                        const std::vector<Mat<at::states>>& path,
+                        double window_s,
+                        std::vector<Epoch>& epochs);
+
 /// Adds the course of the fixes as the yaw of the frame: directions of chords of some metres, while
 /// the vehicle moves.
 void add_course(const Vehicle& vehicle, std::vector<Epoch>& epochs);

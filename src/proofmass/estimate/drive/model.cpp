@@ -270,15 +270,16 @@ void run_into(const AnyModel& model,
   }
   pass.path.resize(model.size());
   pass.seen_cov.resize(model.size());
-  smooth(model, start, gate, forward,
-         [&](std::size_t k, const StepOf<Model>& step, const BackwardInformation<at::states>& later) {
-           pass.path[k] = later.mean(step.filtered);
-           const Mat<at::states, seen_states> G = seen_slopes(pass.path[k]);
-           const Mat<at::states, seen_states> PG = step.filtered.cov.lazyProduct(G);
-           const Mat<at::states, seen_states> LPG = later.Lambda.lazyProduct(PG);
-           pass.seen_cov[k] = G.transpose() * PG - PG.transpose() * LPG;
-           if (k == 0) pass.start = {pass.path[0], later.template cov<at::states>(step.filtered)};
-         });
+  smooth(
+      model, start, gate, forward,
+      [&](std::size_t k, const StepOf<Model>& step, const BackwardInformation<at::states>& later) {
+        pass.path[k] = later.mean(step.filtered);
+        const Mat<at::states, seen_states> G = seen_slopes(pass.path[k]);
+        const Mat<at::states, seen_states> PG = step.filtered.cov.lazyProduct(G);
+        const Mat<at::states, seen_states> LPG = later.Lambda.lazyProduct(PG);
+        pass.seen_cov[k] = G.transpose() * PG - PG.transpose() * LPG;
+        if (k == 0) pass.start = {pass.path[0], later.template cov<at::states>(step.filtered)};
+      });
 }
 
 }  // namespace

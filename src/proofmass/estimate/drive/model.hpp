@@ -40,11 +40,11 @@ inline constexpr int dynamic = base + 1;
 inline constexpr int drift = dynamic;  // for each gyroscope
 inline constexpr int yaw_scale = drift + most_gyros;
 inline constexpr int rate_bias = yaw_scale + most_gyros;
-inline constexpr int radius = rate_bias + most_gyros;         // ρ, for each wheel
-inline constexpr int antenna = radius + most_wheels;  // forward, left
-inline constexpr int bearing = antenna + 2;           // ψ₀
-inline constexpr int origin = bearing + 1;            // p₀: east, north
-inline constexpr int clock = origin + 2;              // τ, for each clock
+inline constexpr int radius = rate_bias + most_gyros;  // ρ, for each wheel
+inline constexpr int antenna = radius + most_wheels;   // forward, left
+inline constexpr int bearing = antenna + 2;            // ψ₀
+inline constexpr int origin = bearing + 1;             // p₀: east, north
+inline constexpr int clock = origin + 2;               // τ, for each clock
 inline constexpr int states = clock + most_clocks;
 }  // namespace at
 
@@ -54,8 +54,8 @@ inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 struct Epoch {
   double time_s = 0.0, dt_s = 0.0;
   double moving_s = 0.0;  ///< time in motion so far
-  int direction = 0;   ///< +1 forwards, −1 backwards, 0 standing
-  bool turns = false;  ///< the vehicle moves fast enough for a steering angle
+  int direction = 0;      ///< +1 forwards, −1 backwards, 0 standing
+  bool turns = false;     ///< the vehicle moves fast enough for a steering angle
   std::array<double, most_drive_wheels> angle_rad{}, angle_std_rad{}, angle_rate_radps{};
   std::array<double, most_drive_wheels + 1> yaw_rad{}, yaw_walk_rad2{};
   double fix_east_m = missing, fix_north_m = missing;
@@ -78,7 +78,7 @@ struct Noise {
   double speed_psd = 1.0;  ///< (m/s)² per second
   double rate_psd = 0.25;  ///< (rad/s)² per second
   double slip_m_per_rtm = 0.004;
-  double fix_std_m = 0.3, wander_std_m = 1.0, wander_s = 30.0;
+  double fix_std_m = 0.15, wander_std_m = 0.7, wander_s = 30.0;
 };
 
 struct Model {

@@ -19,7 +19,8 @@ constexpr double block_s = 1.0, block_turns = 2.0;
 // Yaw rate bias that is left after rotation by the wheel's angle: sensitivity of the gyroscope to
 // acceleration, whose reaction of gravity turns as the yaw does (0.02 °/s per g); of a frame: the
 // change of its bias since the last rest.
-constexpr double wheel_bias_std_radps = 0.015 * rad_per_deg, frame_bias_std_radps = 0.02 * rad_per_deg;
+constexpr double wheel_bias_std_radps = 0.015 * rad_per_deg,
+                 frame_bias_std_radps = 0.02 * rad_per_deg;
 
 using Three = Eigen::Vector3d;
 

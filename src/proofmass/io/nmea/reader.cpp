@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "proofmass/io/text/line_reader.hpp"
 #include "proofmass/io/bytes/random_bytes.hpp"
 #include "proofmass/io/table_reader.hpp"
+#include "proofmass/io/text/line_reader.hpp"
 
 namespace proofmass::io {
 namespace {
