@@ -69,6 +69,7 @@ Course make_course(const Scenario& scenario, std::uint64_t seed) {
 struct Imperfect {
   Rot mounting;  // sensor axes from wheel axes
   Vec lever, accel_bias, gyro_bias, accel_scale, gyro_scale;
+  Rot g_sensitivity;  // of the gyroscope, rad/s per m/s²
   double accel_noise, gyro_noise;
 };
 
@@ -88,6 +89,10 @@ Imperfect draw_sensor(std::uint64_t seed, std::size_t index, bool hub) {
   it.gyro_bias = three(0.004);
   it.accel_scale = Vec::Ones() + three(0.003);
   it.gyro_scale = Vec::Ones() + three(0.01);
+  // 0.01 °/s per g, on every axis and between them.
+  constexpr double usual_g_sensitivity = 0.01 * pi / 180.0 / gravity;
+  for (Eigen::Index row = 0; row < 3; ++row)
+    it.g_sensitivity.row(row) = three(usual_g_sensitivity).transpose();
   it.accel_noise = 0.1;
   it.gyro_noise = 0.003;
   return it;
@@ -116,9 +121,10 @@ estimate::WheelSensor measure(const Motion& motion,
         it.mounting * (motion.rotation[k].transpose() * (acceleration + Vec(0.0, 0.0, gravity)));
     const Rot change = motion.rotation[k - 1].transpose() * motion.rotation[k + 1];
     const Vec rate =
-        it.mounting *
-        Vec(change(2, 1) - change(1, 2), change(0, 2) - change(2, 0), change(1, 0) - change(0, 1)) /
-        (4.0 * step_s);
+        it.mounting * Vec(change(2, 1) - change(1, 2), change(0, 2) - change(2, 0),
+                          change(1, 0) - change(0, 1)) /
+            (4.0 * step_s) +
+        it.g_sensitivity * force;
     sensor.time_s.push_back(static_cast<double>(k) * step_s);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<Eigen::Index>(axis);
@@ -184,7 +190,12 @@ estimate::GnssFixes make_fixes(const Scenario& scenario,
   estimate::GnssFixes fixes{.name = "fixes", .fixes = {}};
   constexpr std::size_t every = 200;  // 5 Hz
   const double fade = std::exp(-static_cast<double>(every) * step_s / scenario.wander_s);
+  const double noise_fade = std::exp(-static_cast<double>(every) * step_s / scenario.fix_noise_s);
+  const auto step_of = [&](double size, double faded) {
+    return size * std::sqrt(1.0 - faded * faded) * Vec(draw.normal(), draw.normal(), 0.0);
+  };
   Vec wander(scenario.wander_m * draw.normal(), scenario.wander_m * draw.normal(), 0.0);
+  Vec noise(scenario.fix_noise_m * draw.normal(), scenario.fix_noise_m * draw.normal(), 0.0);
   const double lat0 = 0.8, earth_m = 6378137.0, e2 = 0.00669437999014;
   const double w = std::sqrt(1.0 - e2 * std::sin(lat0) * std::sin(lat0));
   const double north_m = earth_m * (1.0 - e2) / (w * w * w), east_m = earth_m / w * std::cos(lat0);
@@ -192,10 +203,10 @@ estimate::GnssFixes make_fixes(const Scenario& scenario,
     const Vec antenna = turned(Vec::UnitZ(), vehicle.heading_rad) *
                         (course.position_m[k] + turned(Vec::UnitZ(), course.yaw_rad[k]) *
                                                     Vec(vehicle.antenna_x, vehicle.antenna_y, 0.0));
-    wander = fade * wander + scenario.wander_m * std::sqrt(1.0 - fade * fade) *
-                                 Vec(draw.normal(), draw.normal(), 0.0);
-    const double east = antenna.x() + wander.x() + scenario.fix_noise_m * draw.normal();
-    const double north = antenna.y() + wander.y() + scenario.fix_noise_m * draw.normal();
+    wander = fade * wander + step_of(scenario.wander_m, fade);
+    noise = noise_fade * noise + step_of(scenario.fix_noise_m, noise_fade);
+    const double east = antenna.x() + wander.x() + noise.x();
+    const double north = antenna.y() + wander.y() + noise.y();
     fixes.fixes.push_back({.time_s = static_cast<double>(k) * step_s + clock_s,
                            .latitude_rad = lat0 + north / north_m,
                            .longitude_rad = 0.2 + east / east_m});
@@ -315,9 +326,25 @@ const std::vector<Scenario>& scenarios() {
        .encoders = true,
        .circumference_known = false,
        .track_known = false,
-       .wander_m = 3.0,
+       .wander_m = 2.0,
        .wander_s = 8.0,
        .fix_noise_m = 0.3},
+      {.name = "encoder-gnss-noise",
+       .gyroscopes = false,
+       .fixes = true,
+       .frame = true,
+       .encoders = true,
+       .circumference_known = false,
+       .track_known = false,
+       .wander_m = 0.0,
+       .fix_noise_m = 0.3,
+       .fix_noise_s = 0.01},
+      {.name = "encoder-gnss-only",
+       .gyroscopes = false,
+       .fixes = true,
+       .encoders = true,
+       .circumference_known = false,
+       .track_known = false},
       {.name = "gyro"},
       {.name = "gyro-clocks", .own_clocks = true},
       {.name = "accel", .gyroscopes = false},
