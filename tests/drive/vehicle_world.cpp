@@ -120,11 +120,11 @@ estimate::WheelSensor measure(const Motion& motion,
     const Vec force =
         it.mounting * (motion.rotation[k].transpose() * (acceleration + Vec(0.0, 0.0, gravity)));
     const Rot change = motion.rotation[k - 1].transpose() * motion.rotation[k + 1];
-    const Vec rate =
-        it.mounting * Vec(change(2, 1) - change(1, 2), change(0, 2) - change(2, 0),
-                          change(1, 0) - change(0, 1)) /
-            (4.0 * step_s) +
-        it.g_sensitivity * force;
+    const Vec rate = it.mounting *
+                         Vec(change(2, 1) - change(1, 2), change(0, 2) - change(2, 0),
+                             change(1, 0) - change(0, 1)) /
+                         (4.0 * step_s) +
+                     it.g_sensitivity * force;
     sensor.time_s.push_back(static_cast<double>(k) * step_s);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<Eigen::Index>(axis);
@@ -191,7 +191,7 @@ estimate::GnssFixes make_fixes(const Scenario& scenario,
   constexpr std::size_t every = 200;  // 5 Hz
   const double fade = std::exp(-static_cast<double>(every) * step_s / scenario.wander_s);
   const double noise_fade = std::exp(-static_cast<double>(every) * step_s / scenario.fix_noise_s);
-  const auto step_of = [&](double size, double faded) {
+  const auto step_of = [&](double size, double faded) -> Vec {
     return size * std::sqrt(1.0 - faded * faded) * Vec(draw.normal(), draw.normal(), 0.0);
   };
   Vec wander(scenario.wander_m * draw.normal(), scenario.wander_m * draw.normal(), 0.0);

@@ -27,7 +27,7 @@ struct Scenario {
   double slip_m_per_rtm = 0.004;
   double wander_m = 0.8, wander_s = 25.0;
   double fix_noise_m = 0.1, fix_noise_s = 1.0;  ///< the receiver filters its noise over that time
-  double steering = 1.0;  ///< of the usual curvature
+  double steering = 1.0;                        ///< of the usual curvature
 };
 
 /// The scenarios of docs/methods/drive.md.

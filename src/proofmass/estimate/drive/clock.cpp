@@ -13,7 +13,9 @@ namespace proofmass::estimate::drive {
 namespace {
 
 constexpr double most_points = 8000.0;
-constexpr double change_s = 1.0;  // the fixes of a receiver are a fifth of a second apart or more
+// Changes of wheel speeds; and of the fixes' speed, whose noise over a second is that of the
+// motion.
+constexpr double wheel_change_s = 1.0, fix_change_s = 4.0, fix_chord_s = 3.0;
 
 // Changes of a signal over change_s, centred, on a grid of its own clock.
 struct Changes {
@@ -27,7 +29,7 @@ struct Changes {
   }
 };
 
-Changes changes_of(const Signal& signal, double step_s) {
+Changes changes_of(const Signal& signal, double step_s, double change_s) {
   Changes changes{.start_s = signal.time_s.front(), .step_s = step_s, .values = {}};
   for (double t = changes.start_s; t <= signal.time_s.back(); t += step_s)
     changes.values.push_back(at_time(signal.time_s, signal.values, t + 0.5 * change_s) -
@@ -51,9 +53,15 @@ double duration(const Signal& signal) {
 
 }  // namespace
 
-Alignment align(const Signal& first, const Signal& second, std::optional<double> expected_s) {
+namespace {
+
+Alignment align_changes(const Signal& first,
+                        const Signal& second,
+                        double change_s,
+                        std::optional<double> expected_s) {
   const double step_s = std::max(0.05, std::max(duration(first), duration(second)) / most_points);
-  const Changes a = changes_of(first, step_s), b = changes_of(second, step_s);
+  const Changes a = changes_of(first, step_s, change_s);
+  const Changes b = changes_of(second, step_s, change_s);
   const double norm = std::sqrt(a.power() * b.power());
   if (!(norm > 0.0)) return {};
   const auto offset_of = [&](double lag) { return b.start_s - a.start_s + lag * step_s; };
@@ -83,6 +91,12 @@ Alignment align(const Signal& first, const Signal& second, std::optional<double>
   return found;
 }
 
+}  // namespace
+
+Alignment align(const Signal& first, const Signal& second, std::optional<double> expected_s) {
+  return align_changes(first, second, wheel_change_s, expected_s);
+}
+
 LocalFixes local_fixes(const GnssFixes& fixes) {
   LocalFixes local;
   if (fixes.fixes.empty()) return local;
@@ -109,9 +123,9 @@ Signal speed_of(const LocalFixes& fixes) {
   if (t.size() < 2) return speed;
   std::size_t back = 0;
   for (std::size_t k = 1; k < t.size(); ++k) {
-    while (back + 1 < k && t[k] - t[back + 1] >= change_s) ++back;
+    while (back + 1 < k && t[k] - t[back + 1] >= fix_chord_s) ++back;
     const double step_s = t[k] - t[back];
-    if (step_s < 0.5 * change_s) continue;
+    if (step_s < 0.5 * fix_chord_s) continue;
     const double middle = 0.5 * (t[k] + t[back]);
     if (!speed.time_s.empty() && middle <= speed.time_s.back()) continue;
     speed.time_s.push_back(middle);
@@ -131,8 +145,8 @@ ScaledAlignment align_fixes(const Signal& wheels, const LocalFixes& fixes) {
     const Signal speed = speed_of(scaled);
     if (speed.time_s.size() < 5) continue;
     const double ratio = duration(speed) / duration(wheels);
-    if (ratio > 20.0 || ratio < 0.05) continue;
-    const Alignment found = align(wheels, speed);
+    if (scale != 1.0 && (ratio > 2.0 || ratio < 0.5)) continue;
+    const Alignment found = align_changes(wheels, speed, fix_change_s, {});
     // The stamps are believed unless another scale fits clearly better.
     if (found.correlation > best.alignment.correlation + (scale == 1.0 ? 0.0 : 0.1))
       best = {scale, found};

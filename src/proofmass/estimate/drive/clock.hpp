@@ -37,7 +37,7 @@ struct LocalFixes {
 
 [[nodiscard]] LocalFixes local_fixes(const GnssFixes& fixes);
 
-/// Speed from differences of fixes that are at least a second apart.
+/// Speed from differences of fixes that are some seconds apart.
 [[nodiscard]] Signal speed_of(const LocalFixes& fixes);
 
 /// Seconds for each second of the fixes' stamps, a power of ten: the one whose speed correlates

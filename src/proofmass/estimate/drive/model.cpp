@@ -94,11 +94,13 @@ Transition<at::states, at::dynamic> Model::transition(const State& x, std::size_
   for (int i = 0; i < vehicle.wheels; ++i) {
     const auto n = static_cast<std::size_t>(i);
     const Rolling wheel = rolling(x, vehicle.side[n], vehicle.steered[n]);
-    step.mean(at::rolled + i) += wheel.speed * h;
-    by_v(at::rolled + i) = wheel.by_speed(0) * h;
-    by_w(at::rolled + i) = wheel.by_speed(1) * h;
-    step.F(at::rolled + i, at::track) = wheel.by_speed(2) * h;
-    step.F(at::rolled + i, at::base) = wheel.by_speed(3) * h;
+    const double nominal_s = h * std::exp(-x(at::radius + i));
+    step.mean(at::rolled + i) += wheel.speed * nominal_s;
+    by_v(at::rolled + i) = wheel.by_speed(0) * nominal_s;
+    by_w(at::rolled + i) = wheel.by_speed(1) * nominal_s;
+    step.F(at::rolled + i, at::track) = wheel.by_speed(2) * nominal_s;
+    step.F(at::rolled + i, at::base) = wheel.by_speed(3) * nominal_s;
+    step.F(at::rolled + i, at::radius + i) = -wheel.speed * nominal_s;
     step.Q(at::rolled + i, at::rolled + i) = slip2_m2;
   }
   step.F.col(at::speed) = by_v;
@@ -124,14 +126,13 @@ void Model::measure_wheels(const State& x, const Epoch& now, Rows& out) const {
     const auto n = static_cast<std::size_t>(i);
     if (std::isnan(now.angle_rad[n])) continue;
     auto& row = add_row(out);
-    const double per_m = std::exp(-x(at::radius + i)) / vehicle.radius_m[n];
+    const double per_m = 1.0 / vehicle.radius_m[n];
     const int clock = vehicle.clock[n];
     const double lead_s = x(at::clock + clock) - vehicle.offset_s[static_cast<std::size_t>(clock)];
     row.value = now.angle_rad[n];
     row.predicted = x(at::rolled + i) * per_m - now.angle_rate_radps[n] * lead_s;
     row.variance = square(now.angle_std_rad[n]);
     row.h(at::rolled + i) = per_m;
-    row.h(at::radius + i) = -x(at::rolled + i) * per_m;
     row.h(at::clock + clock) = -now.angle_rate_radps[n];
   }
 }

@@ -16,12 +16,16 @@
 //
 //     x  += v h cos(ψ + ω h / 2),  y += v h sin(ψ + ω h / 2),  ψ += ω h
 //     σ  += v h · direction                              distance travelled
-//     Sᵢ += h √((v − ω c)² + (ω b)²) · sgn(v − ω c) + slip    distance that wheel i rolled
-//     zᵢ  = Sᵢ e^(−ρᵢ) / rᵢ − θ̇ᵢ τ                        angle of wheel i, whose clock is τ ahead
+//     Sᵢ += h √((v − ω c)² + (ω b)²) · sgn(v − ω c) e^(−ρᵢ) + slip    distance that wheel i rolled,
+//                                                        if its radius were the nominal rᵢ
+//     zᵢ  = Sᵢ / rᵢ − θ̇ᵢ τ                                angle of wheel i, whose clock is τ ahead
 //     z_j = (1 + k_j) (ψ + δ_j) + d_j + b_j t_m           integrated yaw rate of gyroscope j, with
 //                                                        t_m the time in motion so far
 //     δ   = atan(ω b / (v − ω c))                         steering angle (0 if unsteered)
 //     z_f = p₀ + R(ψ₀) (p + R(ψ) a) + wander              fix, with the antenna at a
+//
+// Slip is an error of the nominal distance, an angle: as one of the true distance it would be
+// smaller on smaller wheels, and the most probable scale the smallest that the fixes permit.
 //
 // A steered wheel rolls along its own plane, which without slip is the direction in which its
 // contact point moves (Ackermann): its speed needs no measurement of the steering.
@@ -36,15 +40,15 @@ inline constexpr int x = 0, y = 1, heading = 2, path = 3, speed = 4, rate = 5;
 inline constexpr int rolled = 6;                     // for each wheel
 inline constexpr int wander = rolled + most_wheels;  // east, north
 inline constexpr int track = wander + 2, base = track + 1;
-inline constexpr int dynamic = base + 1;
+inline constexpr int radius = base + 1;  // ρ, for each wheel
+inline constexpr int dynamic = radius + most_wheels;
 inline constexpr int drift = dynamic;  // for each gyroscope
 inline constexpr int yaw_scale = drift + most_gyros;
 inline constexpr int rate_bias = yaw_scale + most_gyros;
-inline constexpr int radius = rate_bias + most_gyros;  // ρ, for each wheel
-inline constexpr int antenna = radius + most_wheels;   // forward, left
-inline constexpr int bearing = antenna + 2;            // ψ₀
-inline constexpr int origin = bearing + 1;             // p₀: east, north
-inline constexpr int clock = origin + 2;               // τ, for each clock
+inline constexpr int antenna = rate_bias + most_gyros;  // forward, left
+inline constexpr int bearing = antenna + 2;             // ψ₀
+inline constexpr int origin = bearing + 1;              // p₀: east, north
+inline constexpr int clock = origin + 2;                // τ, for each clock
 inline constexpr int states = clock + most_clocks;
 }  // namespace at
 
