@@ -106,8 +106,7 @@ Chart chart_of(const std::vector<Epoch>& epochs, const std::vector<State>& path)
 
 // Densities of the random walks of speed and yaw rate: those of the changes that the recordings
 // show, times `loose`. A density that fits the changes makes their size at the nominal scale the
-// most probable one, and so determines the scale: that of the path came out 1 % small beside
-// fixes. A hundredfold density has no say, and the measurements are precise enough to need no
+// most probable one, and so has a say in the scale; the measurements are precise enough to need no
 // smoothing. Where nothing measures turns, the yaw rate has the density of a car's steering.
 void set_motion_noise(const std::vector<Epoch>& epochs, const Vehicle& vehicle, Noise& noise) {
   double speed2 = 0.0, rate2 = 0.0, speeds = 0.0, rates = 0.0;
