@@ -12,13 +12,18 @@ namespace {
 constexpr double lost_heading_rad = 0.7;
 // Beyond this the uncertainty of the position is an arc, which an ellipse does not describe.
 constexpr double bent_position_rad = 0.3;
+// The errors of the angles are correlated over some samples, as quantisation is; the filter takes
+// them as white, and the offsets of the clocks as more precise than a fraction of a sample.
+constexpr double least_clock_std_s = 0.003;
 
 Uncertain state(const Gaussian<at::states>& x, int index) {
   return {x.mean(index), std::sqrt(std::max(0.0, x.cov(index, index)))};
 }
 
 std::optional<Uncertain> clock_offset(const Gaussian<at::states>& end, int clock) {
-  return clock == 0 ? Uncertain{} : state(end, at::clock + clock);
+  if (clock == 0) return Uncertain{};
+  const Uncertain offset = state(end, at::clock + clock);
+  return Uncertain{offset.value, std::hypot(offset.std, least_clock_std_s)};
 }
 
 void add_series(const Fitted& fitted, const std::vector<Epoch>& epochs, DriveSeries& out) {
