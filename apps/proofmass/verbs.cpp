@@ -7,6 +7,7 @@ Verb budget_verb();
 Verb calibrate_verb();
 Verb convert_verb();
 Verb drift_verb();
+Verb drive_verb();
 Verb fleet_verb();
 Verb inspect_verb();
 Verb noise_verb();
@@ -23,10 +24,10 @@ Verb tune_verb();
 Verb wheel_verb();
 
 std::vector<Verb> all_verbs() {
-  return {inspect_verb(),   serve_verb(),    convert_verb(), noise_verb(), drift_verb(),
-          calibrate_verb(), tumble_verb(),   sensor_verb(),  wheel_verb(), track_verb(),
-          tilt_verb(),      tune_verb(),     budget_verb(),  fleet_verb(), record_verb(),
-          recover_verb(),   simulate_verb(), thesis_verb()};
+  return {inspect_verb(),   serve_verb(),   convert_verb(),  noise_verb(),  drift_verb(),
+          calibrate_verb(), tumble_verb(),  sensor_verb(),   wheel_verb(),  drive_verb(),
+          track_verb(),     tilt_verb(),    tune_verb(),     budget_verb(), fleet_verb(),
+          record_verb(),    recover_verb(), simulate_verb(), thesis_verb()};
 }
 
 }  // namespace proofmass::app

@@ -40,12 +40,19 @@ template <class C>
   if constexpr (requires { command.turns; }) files.add_read(command.turns);
   if constexpr (requires { command.validate; }) files.add_read(command.validate);
   if constexpr (requires { command.wheels; }) files.add_read(command.wheels);
+  if constexpr (requires { command.named.right; }) {
+    files.add_read(command.named.right);
+    files.add_read(command.named.left);
+    files.add_read(command.named.frame);
+    files.add_read(command.named.gnss);
+  }
   if constexpr (requires { command.input; }) files.sensors = command.input.sensors;
   if constexpr (requires { command.sensors; }) files.sensors = command.sensors;
   files.add_written("-o", command.output.output);
   files.add_written("--json", command.output.json);
   files.add_written("--report", command.output.report);
   files.add_written("--page", command.output.page);
+  if constexpr (requires { command.geojson; }) files.add_written("--geojson", command.geojson);
   if constexpr (requires { command.update_sensor; })
     files.add_written("--update-sensor", command.update_sensor);
   return files;

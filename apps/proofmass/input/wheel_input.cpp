@@ -28,6 +28,17 @@ bool share_a_clock(const Recording& a, const Recording& b) {
   return a_start && b_start && *a_start <= *end_ns(b) && *b_start <= *end_ns(a);
 }
 
+void keep_notes(const std::vector<Recording>& recordings, std::vector<Note>& notes) {
+  for (const Recording& recording : recordings) {
+    for (const Note& note : recording.notes) {
+      const bool several = recordings.size() > 1;
+      notes.push_back({note.severity, several ? recording.source + ": " + note.text : note.text});
+    }
+  }
+}
+
+}  // namespace
+
 estimate::WheelSensor wheel_sensor(const Recording& recording,
                                    const Accelerometer& from,
                                    double begin_s,
@@ -58,17 +69,6 @@ estimate::WheelSensor wheel_sensor(const Recording& recording,
                                                gyroscope.unit_if_unknown, notes);
   return sensor;
 }
-
-void keep_notes(const std::vector<Recording>& recordings, std::vector<Note>& notes) {
-  for (const Recording& recording : recordings) {
-    for (const Note& note : recording.notes) {
-      const bool several = recordings.size() > 1;
-      notes.push_back({note.severity, several ? recording.source + ": " + note.text : note.text});
-    }
-  }
-}
-
-}  // namespace
 
 WheelInput wheel_input(const std::vector<std::string>& files,
                        const InputFlags& flags,

@@ -7,6 +7,7 @@
 #include "cli/common_flags.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/estimate/wheel.hpp"
+#include "proofmass/sensor/calibrated_channels.hpp"
 
 // Accelerometers from one or two recordings of a rotating wheel.
 namespace proofmass::app {
@@ -24,6 +25,13 @@ struct GyroscopeUse {
   bool wanted = true;
   std::string unit_if_unknown = "rad/s";
 };
+
+/// An accelerometer with its gyroscope; sample k is at begin_s + time.at(k). Throws Failure.
+[[nodiscard]] estimate::WheelSensor wheel_sensor(const Recording& recording,
+                                                 const sensor::Accelerometer& from,
+                                                 double begin_s,
+                                                 const GyroscopeUse& gyroscope,
+                                                 std::vector<Note>& notes);
 
 /// One or two accelerometers of one run, calibrated and in m/s^2, with their gyroscopes. Throws
 /// Failure.

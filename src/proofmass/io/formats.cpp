@@ -10,6 +10,7 @@
 #include "proofmass/io/lvm/reader.hpp"
 #include "proofmass/io/matlab/mat_reader.hpp"
 #include "proofmass/io/mcap/reader.hpp"
+#include "proofmass/io/nmea/reader.hpp"
 #include "proofmass/io/numpy/npy_reader.hpp"
 #include "proofmass/io/parquet/reader.hpp"
 #include "proofmass/io/tdms/reader.hpp"
@@ -32,6 +33,7 @@ constexpr std::array all_formats = std::to_array<Format>({
     {"MCAP", claims_mcap, open_mcap},
     {"WAV", claims_wav, open_wav},
     {"x-IMU", claims_ximu, open_ximu},
+    {"NMEA", claims_nmea, open_nmea},
     {"zip", claims_zip, open_zip_tables, true},
     {"Parquet", claims_parquet, open_parquet},
     {"foreign", claims_foreign, refuse_foreign},

@@ -1,0 +1,397 @@
+#include "proofmass/estimate/drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "proofmass/core/in_parallel.hpp"
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/drive/findings.hpp"
+#include "proofmass/estimate/drive/fit.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+using namespace drive;
+
+constexpr double least_correlation = 0.3;
+constexpr double least_common_s = 3.0;
+constexpr double unknown_radius_m = 0.3;  // with no scale, lengths are in units of this
+// Standard deviations of offsets found by correlation, before the filter refines them.
+constexpr double wheel_offset_std_s = 0.1, fix_offset_std_s = 0.4;
+constexpr Uncertain usual_track_m{1.2, 0.6}, usual_base_m{2.6, 0.5};
+
+Status check(const std::vector<DriveWheel>& wheels) {
+  if (wheels.empty()) return Error{Errc::invalid_argument, "no wheel"};
+  if (wheels.size() > most_drive_wheels)
+    return Error{Errc::invalid_argument, "more than four wheels"};
+  for (const DriveWheel& wheel : wheels) {
+    if (!wheel.encoder_rad.empty() && wheel.encoder_rad.size() != wheel.sensor.time_s.size())
+      return Error{Errc::invalid_argument, wheel.sensor.name + ": channels of different lengths"};
+    if (wheel.circumference_m && !(wheel.circumference_m->value > 0.0))
+      return Error{Errc::invalid_argument,
+                   wheel.sensor.name + ": a circumference must be positive"};
+  }
+  return Done{};
+}
+
+Signal speed_signal(const Trace& trace) {
+  Signal signal{trace.time_s, trace.speed_radps};
+  for (double& value : signal.values) value = std::abs(value);
+  return signal;
+}
+
+std::string seconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f s", value);
+  return text;
+}
+
+// Σ of both speeds' product on the first's clock: negative if one counts backwards.
+double same_way(const Trace& a, const Trace& b, double offset_s) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.time_s.size(); ++k) {
+    const double t = a.time_s[k] + offset_s;
+    if (t < b.time_s.front() || t > b.time_s.back()) continue;
+    sum += a.speed_radps[k] * at_time(b.time_s, b.speed_radps, t);
+  }
+  return sum;
+}
+
+// The clocks of the recordings, numbered from the first wheel's, which is 0.
+class Clocks {
+ public:
+  int number(int given) {
+    const auto [found, is_new] = numbers_.try_emplace(given, next_);
+    if (is_new) ++next_;
+    return found->second;
+  }
+  int another() { return next_++; }
+
+ private:
+  std::map<int, int> numbers_;
+  int next_ = 0;
+};
+
+struct Gathered {
+  Recorded recorded;
+  Setting setting;
+};
+
+// Relates one more wheel's clock to the first's, and its direction. Errors: not_observable.
+Status relate(const DriveWheel& wheel,
+              std::size_t i,
+              Clocks& clocks,
+              Gathered& all,
+              DriveSolution& solution) {
+  Vehicle& vehicle = all.setting.vehicle;
+  std::vector<Trace>& traces = all.recorded.wheels;
+  int clock = clocks.number(wheel.clock);
+  const auto at_clock = static_cast<std::size_t>(clock);
+  const bool known = clock == 0 || all.recorded.offset_std_s[at_clock] > 0.0;
+  const std::optional<double> expected =
+      known ? std::optional(all.recorded.offset_s[at_clock]) : std::nullopt;
+  const Alignment found = align(speed_signal(traces.front()), speed_signal(traces[i]), expected);
+  if (found.correlation < least_correlation)
+    return Error{Errc::not_observable, wheel.sensor.name + ": its speed resembles that of " +
+                                           solution.wheels.front().name +
+                                           " at no offset of their clocks: not of one drive"};
+  if (known && std::abs(found.offset_s - *expected) > 0.5) {
+    solution.notes.push_back({Severity::warning, wheel.sensor.name +
+                                                     ": its stamps are of another clock than they "
+                                                     "seem: the motion differs by " +
+                                                     seconds(found.offset_s - *expected)});
+    clock = clocks.another();
+  }
+  vehicle.clock[i] = clock;
+  double offset_s = expected.value_or(0.0);
+  if (!known || clock != clocks.number(wheel.clock)) {
+    offset_s = found.offset_s;
+    all.recorded.offset_s[static_cast<std::size_t>(clock)] = offset_s;
+    all.recorded.offset_std_s[static_cast<std::size_t>(clock)] = wheel_offset_std_s;
+  }
+  if (same_way(traces.front(), traces[i], offset_s) < 0.0) reverse(traces[i]);
+  return Done{};
+}
+
+// Forward is the direction in which the vehicle gets further.
+void face_forward(std::vector<Trace>& traces) {
+  double net = 0.0;
+  for (const Trace& trace : traces) net += trace.angle_rad.back() - trace.angle_rad.front();
+  if (net >= 0.0) return;
+  for (Trace& trace : traces) reverse(trace);
+}
+
+Status add_frame(const DriveFrame& frame, Clocks& clocks, Gathered& all, DriveSolution& solution) {
+  const int clock = clocks.number(frame.clock);
+  const auto at_clock = static_cast<std::size_t>(clock);
+  double offset_s = all.recorded.offset_s[at_clock];
+  if (clock != 0 && all.recorded.offset_std_s[at_clock] == 0.0) {
+    // By the yaw of a wheel, whose steering is part of it only briefly.
+    const auto with_yaw = std::ranges::find_if(
+        all.recorded.wheels, [](const Trace& trace) { return !trace.yaw_rad.empty(); });
+    if (with_yaw == all.recorded.wheels.end() || frame.sensor.rate_radps[0].empty()) {
+      solution.notes.push_back(
+          {Severity::warning,
+           frame.sensor.name + ": its clock is not that of a wheel, and no wheel has a gyroscope "
+                               "to relate them by: it is not used"});
+      return Done{};
+    }
+    const auto trace = trace_frame(
+        frame.sensor, {{frame.sensor.time_s.front(), frame.sensor.time_s.front() + 1.0, 0, {}}});
+    if (!trace) return trace.error();
+    const auto wheel = static_cast<std::size_t>(with_yaw - all.recorded.wheels.begin());
+    const auto wheel_clock = static_cast<std::size_t>(all.setting.vehicle.clock[wheel]);
+    const Alignment found =
+        align({with_yaw->time_s, with_yaw->yaw_rad}, {trace->time_s, trace->yaw_rad});
+    if (std::abs(found.correlation) < least_correlation) {
+      solution.notes.push_back(
+          {Severity::warning, frame.sensor.name + ": its turns resemble those of the wheels at "
+                                                  "no offset of their clocks: it is not used"});
+      return Done{};
+    }
+    offset_s = found.offset_s + all.recorded.offset_s[wheel_clock];
+    all.recorded.offset_s[at_clock] = offset_s;
+    all.recorded.offset_std_s[at_clock] = 2.0 * wheel_offset_std_s;
+  }
+  all.setting.vehicle.clock[most_drive_wheels] = clock;
+  std::vector<Stretch> rests = rests_of(all.recorded.wheels.front(), 1.0);
+  for (Stretch& rest : rests) {
+    // Half a second inside, since the offset is not exact yet.
+    rest.start_s += offset_s + 0.3;
+    rest.end_s += offset_s - 0.3;
+  }
+  auto trace = trace_frame(frame.sensor, rests);
+  if (!trace) {
+    solution.notes.push_back({Severity::warning, trace.error().message + ": it is not used"});
+    return Done{};
+  }
+  all.recorded.frame = std::move(trace).value();
+  return Done{};
+}
+
+Status add_fixes(const GnssFixes& fixes, Clocks& clocks, Gathered& all, DriveSolution& solution) {
+  LocalFixes local = local_fixes(fixes);
+  const ScaledAlignment found = align_fixes(speed_signal(all.recorded.wheels.front()), local);
+  if (found.alignment.correlation < least_correlation) {
+    solution.notes.push_back(
+        {Severity::warning,
+         fixes.name + ": the speed of the fixes resembles that of the wheels at no offset "
+                      "of their clocks: the fixes are not used"});
+    return Done{};
+  }
+  for (double& t : local.time_s) t *= found.scale;
+  if (found.scale != 1.0) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", found.scale);
+    solution.notes.push_back(
+        {Severity::warning,
+         fixes.name + ": its stamps fit the wheels only times " + text + ": taken so"});
+  }
+  const int clock = clocks.another();
+  all.setting.vehicle.fix_clock = clock;
+  all.recorded.offset_s[static_cast<std::size_t>(clock)] = found.alignment.offset_s;
+  all.recorded.offset_std_s[static_cast<std::size_t>(clock)] = fix_offset_std_s;
+  all.recorded.fixes = std::move(local);
+  solution.fixes = DriveFixesFit{.name = fixes.name, .time_scale = found.scale};
+  solution.has_fixes = true;
+  solution.origin_deg = {all.recorded.fixes->latitude_rad * deg_per_rad,
+                         all.recorded.fixes->longitude_rad * deg_per_rad};
+  return Done{};
+}
+
+// Rolling radius from the fixes' speed at the wheels' faster half, by the median.
+double radius_from_fixes(const Recorded& recorded, double offset_s) {
+  const Signal speed = speed_of(*recorded.fixes);
+  const Trace& wheel = recorded.wheels.front();
+  double fastest = 0.0;
+  for (const double rate : wheel.speed_radps) fastest = std::max(fastest, std::abs(rate));
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < speed.time_s.size(); ++k) {
+    const double t = speed.time_s[k] - offset_s;
+    if (t < wheel.time_s.front() || t > wheel.time_s.back()) continue;
+    const double rate = std::abs(at_time(wheel.time_s, wheel.speed_radps, t));
+    if (rate > 0.5 * fastest) ratios.push_back(speed.values[k] / rate);
+  }
+  return median(ratios).value_or(unknown_radius_m);
+}
+
+void set_radii(const std::vector<DriveWheel>& wheels, Gathered& all) {
+  Vehicle& vehicle = all.setting.vehicle;
+  double usual_m = unknown_radius_m, spread = 0.02;
+  const auto given = std::ranges::find_if(
+      wheels, [](const DriveWheel& wheel) { return wheel.circumference_m.has_value(); });
+  if (given != wheels.end()) {
+    usual_m = given->circumference_m->value / rad_per_turn;
+    spread = 0.1;
+  } else if (all.recorded.fixes) {
+    usual_m = radius_from_fixes(all.recorded,
+                                all.recorded.offset_s[static_cast<std::size_t>(vehicle.fix_clock)]);
+    spread = 0.2;
+  }
+  for (std::size_t i = 0; i < wheels.size(); ++i) {
+    const auto& own = wheels[i].circumference_m;
+    vehicle.radius_m[i] = own ? own->value / rad_per_turn : usual_m;
+    all.setting.radius_std[i] = own ? own->std / own->value : spread;
+  }
+}
+
+Result<Gathered> gather(const std::vector<DriveWheel>& wheels,
+                        const std::optional<DriveFrame>& frame,
+                        const std::optional<GnssFixes>& fixes,
+                        const DriveOptions& options,
+                        DriveSolution& solution) {
+  Gathered all;
+  Clocks clocks;
+  all.setting.vehicle.wheels = static_cast<int>(wheels.size());
+  std::vector<std::optional<Result<Trace>>> traces(wheels.size());
+  in_parallel(wheels.size(), options.progress, [&](std::size_t i, const Progress& shown) {
+    WheelOptions own = options.wheel;
+    own.progress = shown;
+    traces[i] = trace_wheel(wheels[i], own);
+  });
+  for (std::size_t i = 0; i < wheels.size(); ++i) {
+    Result<Trace>& trace = *traces[i];
+    if (!trace) return trace.error();
+    for (const Note& note : trace->notes) solution.notes.push_back(note);
+    all.recorded.wheels.push_back(std::move(trace).value());
+    solution.wheels.push_back({.name = wheels[i].sensor.name, .side = wheels[i].side});
+  }
+  for (std::size_t i = 0; i < wheels.size(); ++i)
+    if (Status status = relate(wheels[i], i, clocks, all, solution); !status) return status.error();
+  face_forward(all.recorded.wheels);
+  Recorded& recorded = all.recorded;
+  recorded.start_s = -INFINITY;
+  recorded.end_s = INFINITY;
+  for (std::size_t i = 0; i < wheels.size(); ++i) {
+    const double offset_s =
+        recorded.offset_s[static_cast<std::size_t>(all.setting.vehicle.clock[i])];
+    recorded.start_s = std::max(recorded.start_s, recorded.wheels[i].time_s.front() - offset_s);
+    recorded.end_s = std::min(recorded.end_s, recorded.wheels[i].time_s.back() - offset_s);
+  }
+  if (recorded.end_s - recorded.start_s < least_common_s)
+    return Error{Errc::not_observable, "the wheels' recordings have no three seconds in common"};
+  if (frame)
+    if (Status status = add_frame(*frame, clocks, all, solution); !status) return status.error();
+  if (fixes)
+    if (Status status = add_fixes(*fixes, clocks, all, solution); !status) return status.error();
+  set_radii(wheels, all);
+  return all;
+}
+
+// Which of the wheels are on the steered axle.
+using Steered = std::array<bool, most_drive_wheels>;
+
+// Every assignment with at most one wheel of a side on either axle that agrees with what is given.
+std::vector<Steered> assignments(const std::vector<DriveWheel>& wheels) {
+  std::vector<Steered> all;
+  for (unsigned bits = 0; bits < 1u << wheels.size(); ++bits) {
+    Steered steered{};
+    std::array<std::array<int, 2>, 2> count{};
+    bool fits = true;
+    for (std::size_t i = 0; i < wheels.size(); ++i) {
+      steered[i] = ((bits >> i) & 1u) != 0;
+      fits = fits && wheels[i].steered.value_or(steered[i]) == steered[i];
+      ++count[wheels[i].side == VehicleSide::left ? 1 : 0][steered[i] ? 1 : 0];
+    }
+    for (const auto& side : count)
+      if (side[1] > 1 || (bits != 0 && side[0] > 1)) fits = false;
+    if (fits) all.push_back(steered);
+  }
+  return all;
+}
+
+std::string names_of(const std::vector<DriveWheel>& wheels, const Steered& steered) {
+  std::string names;
+  for (std::size_t i = 0; i < wheels.size(); ++i)
+    if (steered[i]) names += (names.empty() ? "" : " and ") + wheels[i].sensor.name;
+  return names;
+}
+
+void set_geometry(const std::vector<DriveWheel>& wheels,
+                  const DriveOptions& options,
+                  const Steered& steered,
+                  Setting& setting) {
+  const bool both = std::ranges::any_of(
+      wheels, [&](const DriveWheel& wheel) { return wheel.side != wheels.front().side; });
+  const bool offset = both || options.track_m;
+  setting.vehicle.steered = steered;
+  for (std::size_t i = 0; i < wheels.size(); ++i)
+    setting.vehicle.side[i] = !offset ? 0.0 : wheels[i].side == VehicleSide::left ? 1.0 : -1.0;
+  setting.track_m = !offset ? Uncertain{} : options.track_m.value_or(usual_track_m);
+  const bool any = std::ranges::find(steered, true) != steered.end();
+  setting.base_m = any ? options.wheelbase_m.value_or(usual_base_m) : Uncertain{};
+}
+
+// The most probable assignment; the first, all unsteered, unless another is clearly more so.
+Fitted fit_best(const std::vector<DriveWheel>& wheels,
+                const DriveOptions& options,
+                Gathered& all,
+                DriveSolution& solution) {
+  constexpr double clear = 5.0;  // ln of the likelihood ratio
+  const std::vector<Steered> choices = assignments(wheels);
+  // A single wheel shows only by the fixes' noise that it steers: that noise must be estimated.
+  const Effort effort = choices.size() <= 2 ? Effort::full : Effort::comparison;
+  Steered chosen = choices.front();
+  double first = 0.0, best = -INFINITY;
+  for (const Steered& steered : choices) {
+    if (choices.size() == 1) break;
+    set_geometry(wheels, options, steered, all.setting);
+    const double now = fit_path(all.recorded, all.setting, effort, {}).pass.log_likelihood;
+    if (!std::isfinite(best)) first = now;
+    if (now > best + (std::isfinite(best) ? clear : 0.0)) {
+      best = now;
+      chosen = steered;
+    }
+  }
+  set_geometry(wheels, options, chosen, all.setting);
+  if (choices.size() > 1 && best > first)
+    solution.notes.push_back({Severity::info, "the motion shows that " + names_of(wheels, chosen) +
+                                                  " are on the steered axle; --front states it"});
+  return fit_path(all.recorded, all.setting, Effort::full, options.progress);
+}
+
+Known known_of(const std::vector<DriveWheel>& wheels,
+               const DriveOptions& options,
+               const Gathered& all,
+               const Fitted& fitted) {
+  Known known;
+  const bool fixes = all.recorded.fixes.has_value();
+  known.scale = fixes || std::ranges::any_of(wheels, [](const DriveWheel& wheel) {
+                  return wheel.circumference_m.has_value();
+                });
+  known.yaw = all.recorded.has_yaw();
+  known.both_sides = std::ranges::any_of(
+      wheels, [&](const DriveWheel& wheel) { return wheel.side != wheels.front().side; });
+  known.track = options.track_m.has_value() || fixes || known.yaw;
+  const auto& vehicle = fitted.setting.vehicle;
+  if (known.both_sides || options.track_m)
+    known.reference_point = std::ranges::find(vehicle.steered, true) == vehicle.steered.end()
+                                ? "middle between the wheels"
+                                : "middle of the unsteered axle";
+  else
+    known.reference_point =
+        "contact point of the unsteered wheel on the side of " + wheels.front().sensor.name;
+  return known;
+}
+
+}  // namespace
+
+Result<DriveSolution> estimate_drive(const std::vector<DriveWheel>& wheels,
+                                     const std::optional<DriveFrame>& frame,
+                                     const std::optional<GnssFixes>& fixes,
+                                     const DriveOptions& options) {
+  if (Status status = check(wheels); !status) return status.error();
+  DriveSolution solution;
+  auto gathered = gather(wheels, frame, fixes, options, solution);
+  if (!gathered) return gathered.error();
+  Gathered all = std::move(gathered).value();
+  const Fitted fitted = fit_best(wheels, options, all, solution);
+  report_findings(all.recorded, fitted, known_of(wheels, options, all, fitted), solution);
+  return solution;
+}
+
+}  // namespace proofmass::estimate

@@ -1,0 +1,253 @@
+#include "proofmass/estimate/drive/fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "proofmass/core/statistics.hpp"
+
+namespace proofmass::estimate::drive {
+namespace {
+
+using State = Mat<at::states>;
+
+constexpr double gyro_scale_std = 0.015;  // of MEMS gyroscopes as delivered
+constexpr double steer_start_std_rad = 0.5;
+constexpr int relinearisations = 4;
+constexpr double loose = 100.0, steering_psd = 0.1;
+constexpr double course_std_rad = 0.3;
+// Without a yaw rate the shape of the path comes from the fixes, which must be dense.
+constexpr double normal_point_s = 5.0, course_point_s = 1.0;
+
+Gaussian<at::states> prior_of(const Recorded& recorded, const Setting& setting) {
+  Gaussian<at::states> prior;
+  const auto set = [&](int state, double mean, double std) {
+    prior.mean(state) = mean;
+    prior.cov(state, state) = square(std);
+  };
+  set(at::speed, 0.0, 30.0);
+  set(at::rate, 0.0, 2.0);
+  const Vehicle& vehicle = setting.vehicle;
+  for (int i = 0; i < vehicle.wheels; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    set(at::rolled + i, 0.0, 0.003 * vehicle.radius_m[n]);
+    set(at::radius + i, 0.0, setting.radius_std[n]);
+    if (recorded.wheels[n].yaw_rad.empty()) continue;
+    set(at::drift + i, 0.0, vehicle.steered[n] ? steer_start_std_rad : 0.001);
+    set(at::yaw_scale + i, 0.0, gyro_scale_std);
+    set(at::rate_bias + i, 0.0, recorded.wheels[n].yaw_bias_std_radps);
+  }
+  if (recorded.frame) {
+    set(at::drift + most_wheels, 0.0, 0.001);
+    set(at::yaw_scale + most_wheels, 0.0, gyro_scale_std);
+    set(at::rate_bias + most_wheels, 0.0, recorded.frame->yaw_bias_std_radps);
+  }
+  set(at::track, setting.track_m.value, setting.track_m.std);
+  set(at::base, setting.base_m.value, setting.base_m.std);
+  for (int c = 1; c < most_clocks; ++c) {
+    const auto n = static_cast<std::size_t>(c);
+    set(at::clock + c, recorded.offset_s[n], recorded.offset_std_s[n]);
+  }
+  return prior;
+}
+
+// Constants that only fixes determine. The antenna may be anywhere on a car.
+void open_chart(double bearing,
+                const Mat<2>& origin,
+                double wander_m,
+                Gaussian<at::states>& prior) {
+  const auto set = [&](int state, double mean, double std) {
+    prior.mean(state) = mean;
+    prior.cov(state, state) = square(std);
+  };
+  set(at::bearing, bearing, 10.0);
+  set(at::origin, origin(0), 30.0);
+  set(at::origin + 1, origin(1), 30.0);
+  set(at::antenna, 0.0, 1.5);
+  set(at::antenna + 1, 0.0, 0.5);
+  set(at::wander, 0.0, wander_m);
+  set(at::wander + 1, 0.0, wander_m);
+}
+
+struct Chart {
+  double bearing = 0.0;
+  Mat<2> origin = Mat<2>::Zero();
+};
+
+// Rotation and shift that bring a path onto the fixes, by least squares.
+// Source: B. K. P. Horn, J. Opt. Soc. Am. A 4 (1987) 629, in the plane.
+Chart chart_of(const std::vector<Epoch>& epochs, const std::vector<State>& path) {
+  Mat<2> mean_p = Mat<2>::Zero(), mean_f = mean_p;
+  double n = 0.0;
+  for (std::size_t k = 0; k < epochs.size(); ++k) {
+    if (std::isnan(epochs[k].fix_east_m)) continue;
+    mean_p += path[k].segment<2>(at::x);
+    mean_f += Mat<2>(epochs[k].fix_east_m, epochs[k].fix_north_m);
+    n += 1.0;
+  }
+  if (n < 2.0) return {};
+  mean_p /= n;
+  mean_f /= n;
+  double along = 0.0, across = 0.0;
+  for (std::size_t k = 0; k < epochs.size(); ++k) {
+    if (std::isnan(epochs[k].fix_east_m)) continue;
+    const Mat<2> p = path[k].segment<2>(at::x) - mean_p;
+    const Mat<2> f = Mat<2>(epochs[k].fix_east_m, epochs[k].fix_north_m) - mean_f;
+    along += p.dot(f);
+    across += p(0) * f(1) - p(1) * f(0);
+  }
+  Chart chart;
+  chart.bearing = std::atan2(across, along);
+  const double c = std::cos(chart.bearing), s = std::sin(chart.bearing);
+  chart.origin = mean_f - Mat<2>(c * mean_p(0) - s * mean_p(1), s * mean_p(0) + c * mean_p(1));
+  return chart;
+}
+
+// Densities of the random walks of speed and yaw rate: those of the changes that the recordings
+// show, times `loose`. A density that fits the changes makes their size at the nominal scale the
+// most probable one, and so has a say in the scale; the measurements are precise enough to need no
+// smoothing. Where nothing measures turns, the yaw rate has the density of a car's steering.
+void set_motion_noise(const std::vector<Epoch>& epochs, const Vehicle& vehicle, Noise& noise) {
+  double speed2 = 0.0, rate2 = 0.0, speeds = 0.0, rates = 0.0;
+  for (std::size_t k = 2; k < epochs.size(); ++k) {
+    const double h = epochs[k].dt_s;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(vehicle.wheels); ++i) {
+      const double jump =
+          epochs[k].angle_rad[i] - 2.0 * epochs[k - 1].angle_rad[i] + epochs[k - 2].angle_rad[i];
+      if (std::isnan(jump)) continue;
+      speed2 += square(jump * vehicle.radius_m[i] / h) / h;
+      speeds += 1.0;
+    }
+    for (std::size_t j = 0; j < most_drive_wheels + 1; ++j) {
+      const double jump =
+          epochs[k].yaw_rad[j] - 2.0 * epochs[k - 1].yaw_rad[j] + epochs[k - 2].yaw_rad[j];
+      if (std::isnan(jump)) continue;
+      rate2 += square(jump / h) / h;
+      rates += 1.0;
+    }
+  }
+  if (speeds > 0.0) noise.speed_psd = loose * std::max(0.05, speed2 / speeds);
+  const bool both_sides = std::ranges::find(vehicle.side, 1.0) != vehicle.side.end() &&
+                          std::ranges::find(vehicle.side, -1.0) != vehicle.side.end();
+  noise.rate_psd = rates > 0.0  ? loose * std::max(0.01, rate2 / rates)
+                   : both_sides ? loose * steering_psd
+                                : steering_psd;
+}
+
+// The noise parameters whose probability given the recordings is highest, on a logarithmic grid
+// that is refined; each has a prior, since a short recording says little of a slow wander.
+class NoiseSearch {
+ public:
+  NoiseSearch(Model& model, const Gaussian<at::states>& prior, const std::vector<State>& path)
+      : model_(model), prior_(prior), path_(path) {}
+
+  void search() {
+    double best = probability();
+    for (double factor : {2.0, 2.0, 1.41}) {
+      for (const Parameter& parameter : parameters_) {
+        if (parameter.of_fixes && !model_.with_fixes) continue;
+        double& value = model_.noise.*parameter.value;
+        for (const double step : {factor, 1.0 / factor}) {
+          for (int tries = 0; tries < 3; ++tries) {
+            const double before = value;
+            value *= step;
+            const double now = probability();
+            if (now > best) {
+              best = now;
+              continue;
+            }
+            value = before;
+            break;
+          }
+        }
+      }
+    }
+  }
+
+ private:
+  struct Parameter {
+    double Noise::* value;
+    double usual, spread;  ///< median, and standard deviation of the logarithm
+    bool of_fixes;
+  };
+  static constexpr std::array<Parameter, 4> parameters_{
+      {{&Noise::slip_m_per_rtm, 0.004, 0.7, false},
+       {&Noise::fix_std_m, 0.15, 1.0, true},
+       {&Noise::wander_std_m, 0.7, 0.5, true},
+       {&Noise::wander_s, 30.0, 0.5, true}}};
+
+  [[nodiscard]] double probability() const {
+    Gaussian<at::states> prior = prior_;
+    for (const int i : {at::wander, at::wander + 1})
+      if (model_.with_fixes) prior.cov(i, i) = square(model_.noise.wander_std_m);
+    double sum = run(model_, prior, path_, false).log_likelihood;
+    for (const Parameter& parameter : parameters_)
+      if (!parameter.of_fixes || model_.with_fixes)
+        sum -= 0.5 *
+               square(std::log(model_.noise.*parameter.value / parameter.usual) / parameter.spread);
+    return sum;
+  }
+
+  Model& model_;
+  const Gaussian<at::states>& prior_;
+  const std::vector<State>& path_;
+};
+
+void set_in_path(const Gaussian<at::states>& prior, std::vector<State>& path) {
+  for (State& x : path) x.segment<3>(at::bearing) = prior.mean.segment<3>(at::bearing);
+}
+
+// The first path, without the fixes' positions. Where nothing else measures turns, their course is
+// that of the frame: the filter is linearised about this path, and a wrong one would not converge.
+Pass first_pass(const Model& model, const Gaussian<at::states>& prior, bool use_course) {
+  if (!use_course) return run(model, prior, {}, true);
+  std::vector<Epoch> epochs = *model.epochs;
+  add_course(model.vehicle, epochs);
+  Gaussian<at::states> own = prior;
+  own.cov(at::drift + most_wheels, at::drift + most_wheels) = square(course_std_rad);
+  Model with_course = model;
+  with_course.epochs = &epochs;
+  return run(with_course, own, {}, true);
+}
+
+}  // namespace
+
+Fitted fit_path(const Recorded& recorded,
+                const Setting& setting,
+                Effort effort,
+                const Progress& progress) {
+  Fitted fitted{.setting = setting, .noise = {}, .pass = {}};
+  Vehicle& vehicle = fitted.setting.vehicle;
+  vehicle.offset_s = recorded.offset_s;
+  std::vector<Epoch> epochs = epochs_of(recorded, vehicle);
+  Model model{.epochs = &epochs, .vehicle = vehicle, .noise = {}, .with_fixes = false};
+  set_motion_noise(epochs, vehicle, model.noise);
+  Gaussian<at::states> prior = prior_of(recorded, setting);
+  fitted.pass = first_pass(model, prior, recorded.fixes && !recorded.has_yaw());
+  if (recorded.fixes) {
+    model.with_fixes = true;
+    const Chart chart = chart_of(epochs, fitted.pass.path);
+    open_chart(chart.bearing, chart.origin, model.noise.wander_std_m, prior);
+    set_in_path(prior, fitted.pass.path);
+  }
+  const double window_s = recorded.has_yaw() ? normal_point_s : course_point_s;
+  const int passes = effort == Effort::comparison ? 2 : relinearisations;
+  for (int i = 0; i < passes; ++i) {
+    if (progress) progress("path", static_cast<double>(i) / passes);
+    if (recorded.fixes) form_normal_points(vehicle, fitted.pass.path, window_s, epochs);
+    if (i == 1 && effort == Effort::full) NoiseSearch(model, prior, fitted.pass.path).search();
+    for (const int s : {at::wander, at::wander + 1})
+      if (model.with_fixes) prior.cov(s, s) = square(model.noise.wander_std_m);
+    fitted.pass = run(model, prior, fitted.pass.path, true);
+    if (i + 1 == passes) break;
+    for (std::size_t c = 1; c < most_clocks; ++c)
+      vehicle.offset_s[c] = fitted.pass.end.mean(at::clock + static_cast<int>(c));
+    epochs = epochs_of(recorded, vehicle);
+    model.vehicle = vehicle;
+  }
+  fitted.noise = model.noise;
+  return fitted;
+}
+
+}  // namespace proofmass::estimate::drive
