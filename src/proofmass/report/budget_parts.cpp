@@ -42,7 +42,7 @@ std::vector<PartRow> part_rows(const std::vector<const AccelerometerPart*>& part
                                double temperature_change_k) {
   std::vector<PartRow> rows;
   for (const AccelerometerPart* part : parts) {
-    PartRow& row = rows.emplace_back(PartRow{part, {}, {}, {}, {}});
+    PartRow& row = rows.emplace_back(PartRow{.part = part});
     const auto bias = calibrated_bias_mps2(*part, temperature_change_k);
     const char* no_noise = "the datasheet has no noise density";
     if (!part->noise_mps2_rthz)

@@ -17,13 +17,14 @@ struct PartError {
   double t_s = 0.0;
   /// Double integration from rest, as delivered; with the bias calibrated at another temperature;
   /// and the distance between two rests.
-  std::optional<double> delivered_m, calibrated_m, between_rests_m;
+  std::optional<double> delivered_m = {}, calibrated_m = {}, between_rests_m = {};
 };
 
 struct PartRow {
   const sensor::AccelerometerPart* part = nullptr;
-  std::string why_not_delivered, why_not_calibrated, why_not_between_rests;  ///< empty: it is known
-  std::vector<PartError> errors;
+  std::string why_not_delivered = {}, why_not_calibrated = {};  ///< empty: it is known
+  std::string why_not_between_rests = {};
+  std::vector<PartError> errors = {};
 };
 
 /// The parts' errors by their datasheets. `temperature_change_k`: since the calibration.

@@ -258,8 +258,8 @@ AxisPrediction predict_axis(const at::Seen& parameters,
     out.h(c + 1) =
         -sin_n * out.by_angle - by_w2 * 2.0 * w2 * n * cos_n + by_accel * w2 * n * n * sin_n;
   }
-  out.h(at::delay) = -speed * out.by_angle -
-                     by_w2 * 2.0 * speed * wheel.accel - by_accel * wheel.jerk;
+  out.h(at::delay) =
+      -speed * out.by_angle - by_w2 * 2.0 * speed * wheel.accel - by_accel * wheel.jerk;
   out.h(at::runout) = share * cos_1 * across;
   out.h(at::runout + 1) = share * sin_1 * across;
   out.h(at::runout + 2) = share * cos_1 * along;
