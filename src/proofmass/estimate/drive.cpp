@@ -188,8 +188,9 @@ Status add_fixes(const GnssFixes& fixes, Clocks& clocks, Gathered& all, DriveSol
     char text[32];
     std::snprintf(text, sizeof text, "%g", found.scale);
     solution.notes.push_back(
-        {Severity::warning,
-         fixes.name + ": its stamps fit the wheels only times " + text + ": taken so"});
+        {Severity::warning, fixes.name +
+                                ": its stamps fit the motion of the wheels when multiplied by " +
+                                text + ", which was done"});
   }
   const int clock = clocks.another();
   all.setting.vehicle.fix_clock = clock;
@@ -334,7 +335,7 @@ Fitted fit_best(const std::vector<DriveWheel>& wheels,
   constexpr double clear = 5.0;  // ln of the likelihood ratio
   const std::vector<Steered> choices = assignments(wheels);
   // A single wheel shows only by the fixes' noise that it steers: that noise must be estimated.
-  const Effort effort = choices.size() <= 2 ? Effort::full : Effort::comparison;
+  const Effort effort = choices.size() <= 2 ? Effort::comparison : Effort::quick_comparison;
   Steered chosen = choices.front();
   double first = 0.0, best = -INFINITY;
   for (const Steered& steered : choices) {
