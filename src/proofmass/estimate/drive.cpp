@@ -362,7 +362,8 @@ Fitted fit_best(const std::vector<DriveWheel>& wheels,
   Steered chosen = choices.front();
   double first = 0.0, best = -INFINITY;
   for (const Steered& steered : choices) {
-    if (choices.size() == 1) break;
+    // Without a gyroscope the wheels of one axle do not show whether they steer.
+    if (choices.size() == 1 || !all.recorded.has_yaw()) break;
     set_geometry(wheels, options, steered, all.setting);
     const double now = fit_path(all.recorded, all.setting, effort, {}).pass.log_likelihood;
     if (!std::isfinite(best)) first = now;
