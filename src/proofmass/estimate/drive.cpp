@@ -188,8 +188,9 @@ Status add_fixes(const GnssFixes& fixes, Clocks& clocks, Gathered& all, DriveSol
     char text[32];
     std::snprintf(text, sizeof text, "%g", found.scale);
     solution.notes.push_back(
-        {Severity::warning,
-         fixes.name + ": its stamps fit the wheels only times " + text + ": taken so"});
+        {Severity::warning, fixes.name +
+                                ": its stamps fit the motion of the wheels when multiplied by " +
+                                text + ", which was done"});
   }
   const int clock = clocks.another();
   all.setting.vehicle.fix_clock = clock;
@@ -326,6 +327,29 @@ void set_geometry(const std::vector<DriveWheel>& wheels,
   setting.base_m = any ? options.wheelbase_m.value_or(usual_base_m) : Uncertain{};
 }
 
+// Wheels whose gyroscopes turned by different angles: one of them steers.
+void warn_of_steering(const std::vector<DriveWheel>& wheels,
+                      const std::vector<Trace>& traces,
+                      DriveSolution& solution) {
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Trace &a = traces[i], &b = traces[j];
+      if (a.yaw_rad.empty() || b.yaw_rad.empty()) continue;
+      const double first = a.yaw_rad.back() - a.yaw_rad.front();
+      const double second = b.yaw_rad.back() - b.yaw_rad.front();
+      const double span_s = a.time_s.back() - a.time_s.front();
+      const double walk_rad = std::sqrt((a.yaw_walk_rad2ps + b.yaw_walk_rad2ps) * span_s);
+      if (std::abs(first - second) < 0.05 + 0.04 * std::abs(first) + 3.0 * walk_rad) continue;
+      solution.notes.push_back(
+          {Severity::warning,
+           wheels[i].sensor.name + " and " + wheels[j].sensor.name +
+               ": their gyroscopes turned by different angles, as wheels of a steered and of an "
+               "unsteered axle do: state those of the steered axle with --front"});
+      return;
+    }
+  }
+}
+
 // The most probable assignment; the first, all unsteered, unless another is clearly more so.
 Fitted fit_best(const std::vector<DriveWheel>& wheels,
                 const DriveOptions& options,
@@ -334,11 +358,12 @@ Fitted fit_best(const std::vector<DriveWheel>& wheels,
   constexpr double clear = 5.0;  // ln of the likelihood ratio
   const std::vector<Steered> choices = assignments(wheels);
   // A single wheel shows only by the fixes' noise that it steers: that noise must be estimated.
-  const Effort effort = choices.size() <= 2 ? Effort::full : Effort::comparison;
+  const Effort effort = choices.size() <= 2 ? Effort::comparison : Effort::quick_comparison;
   Steered chosen = choices.front();
   double first = 0.0, best = -INFINITY;
   for (const Steered& steered : choices) {
-    if (choices.size() == 1) break;
+    // Without a gyroscope the wheels of one axle do not show whether they steer.
+    if (choices.size() == 1 || !all.recorded.has_yaw()) break;
     set_geometry(wheels, options, steered, all.setting);
     const double now = fit_path(all.recorded, all.setting, effort, {}).pass.log_likelihood;
     if (!std::isfinite(best)) first = now;
@@ -348,6 +373,8 @@ Fitted fit_best(const std::vector<DriveWheel>& wheels,
     }
   }
   set_geometry(wheels, options, chosen, all.setting);
+  if (std::ranges::find(chosen, true) == chosen.end() && choices.size() > 1)
+    warn_of_steering(wheels, all.recorded.wheels, solution);
   if (choices.size() > 1 && best > first)
     solution.notes.push_back({Severity::info, "the motion shows that " + names_of(wheels, chosen) +
                                                   " are on the steered axle; --front states it"});

@@ -232,11 +232,13 @@ Fitted fit_path(const Recorded& recorded,
     set_in_path(prior, fitted.pass.path);
   }
   const double window_s = recorded.has_yaw() ? normal_point_s : course_point_s;
-  const int passes = effort == Effort::comparison ? 2 : relinearisations;
+  const int passes = effort == Effort::quick_comparison ? 2 : relinearisations;
+  model.comparing = effort != Effort::full;
   for (int i = 0; i < passes; ++i) {
     if (progress) progress("path", static_cast<double>(i) / passes);
     if (recorded.fixes) form_normal_points(vehicle, fitted.pass.path, window_s, epochs);
-    if (i == 1 && effort == Effort::full) NoiseSearch(model, prior, fitted.pass.path).search();
+    if (i == 1 && effort != Effort::quick_comparison)
+      NoiseSearch(model, prior, fitted.pass.path).search();
     for (const int s : {at::wander, at::wander + 1})
       if (model.with_fixes) prior.cov(s, s) = square(model.noise.wander_std_m);
     fitted.pass = run(model, prior, fitted.pass.path, true);

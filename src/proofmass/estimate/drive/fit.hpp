@@ -37,9 +37,9 @@ struct Fitted {
   Pass pass;
 };
 
-/// How much is spent on a path: enough to compare hypotheses, or until the clock offsets no longer
-/// move, with the noise parameters that the recordings make most probable.
-enum class Effort { comparison, full };
+/// How much is spent on a path: enough to compare hypotheses on which wheels steer, with the usual
+/// noise parameters or those that the recordings make most probable, or the path to be reported.
+enum class Effort { quick_comparison, comparison, full };
 
 /// Path by filter and relinearised smoother.
 [[nodiscard]] Fitted fit_path(const Recorded& recorded,

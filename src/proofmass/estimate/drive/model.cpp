@@ -152,9 +152,9 @@ void Model::measure_yaw(const State& x, const Epoch& now, Rows& out) const {
     const double seen = x(at::heading) + wheel.steer - x(at::rate) * lead_s;
     row.value = now.yaw_rad[n];
     row.predicted = gain * seen + x(at::drift + j);
-    row.variance = square(!steered    ? yaw_std_rad
-                          : now.turns ? steer_std_rad
-                                      : parked_steer_std_rad);
+    row.variance = square(!steered && !(comparing && j < most_wheels) ? yaw_std_rad
+                          : now.turns                                 ? steer_std_rad
+                                                                      : parked_steer_std_rad);
     row.h(at::heading) = gain;
     row.h(at::yaw_scale + j) = seen;
     row.h(at::drift + j) = 1.0;

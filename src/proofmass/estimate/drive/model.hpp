@@ -94,6 +94,9 @@ struct Model {
   Vehicle vehicle;
   Noise noise;
   bool with_fixes = false;
+  /// Unsteered wheels' yaw as imprecise as steered ones', so that hypotheses on which wheels steer
+  /// differ in what they predict, not in the precision that they claim.
+  bool comparing = false;
 
   [[nodiscard]] std::size_t size() const { return epochs->size(); }
   [[nodiscard]] Transition<states, moving> transition(const State& x, std::size_t k) const;
