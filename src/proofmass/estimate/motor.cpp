@@ -66,7 +66,7 @@ void judge(const Series& series, const Regimes& regimes, const Fit& fit, MotorSo
   for (std::size_t channel = 0; channel < 2; ++channel) {
     double squares = 0.0, products = 0.0, last = 0.0;
     std::size_t count = 0;
-    for (std::size_t i = channel; i < innovations.value.size(); i += 2) {
+    for (std::size_t i = channel; i < innovations.value.size(); i += 3) {
       if (!(innovations.variance[i] > 0.0)) continue;
       const double z = innovations.value[i] / std::sqrt(innovations.variance[i]);
       squares += z * z;

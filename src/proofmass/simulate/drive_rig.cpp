@@ -46,7 +46,8 @@ Recording empty(const DriveOptions& options, const char* source) {
 double exploring_voltage(double t_s) {
   constexpr double turn = 2.0 * std::numbers::pi;
   const double swell = 0.6 + 0.4 * std::sin(turn * 0.037 * t_s);
-  return 30.0 * swell * std::sin(turn * 0.2 * t_s) + 8.0 * std::sin(turn * 2.9 * t_s);
+  return 26.0 * swell * std::sin(turn * 0.2 * t_s) + 10.0 * std::sin(turn * 0.03 * t_s) +
+         5.0 * std::sin(turn * 1.3 * t_s);
 }
 
 class DriveRig::Parts {
@@ -59,8 +60,7 @@ class DriveRig::Parts {
     for (std::size_t s = 0; s < o.sensors.size(); ++s) {
       twins_.push_back(std::make_unique<SensorTwin>(rig, s));
       for (std::size_t axis = 0; axis < 2; ++axis) {
-        channels.push_back(
-            {"acc" + std::to_string(s + 1) + "_" + "xy"[axis], unit("m/s^2"), {}});
+        channels.push_back({"acc" + std::to_string(s + 1) + "_" + "xy" [axis], unit("m/s^2"), {}});
         axes_.emplace_back(*twins_.back(), rig, s, axis);
       }
     }
@@ -81,8 +81,7 @@ class DriveRig::Parts {
                 .wheel = {options.start_angle_rad + at.load_rad, at.load_radps, at.load_radps2},
                 .still_mps2 = {}};
     const double angle = now.wheel.angle_rad;
-    now.still_mps2 = options.gravity_mps2 *
-                     Eigen::Vector3d(std::sin(angle), std::cos(angle), 0.0);
+    now.still_mps2 = options.gravity_mps2 * Eigen::Vector3d(std::sin(angle), std::cos(angle), 0.0);
     for (std::size_t k = 0; k < axes_.size(); ++k) {
       const SensorTwin& twin = *twins_[k / 2];
       const Eigen::Vector3d force = twin.R_sensor_wheel * now.force_mps2(twin.position_m);
@@ -105,11 +104,15 @@ class DriveRig::Parts {
 
 Result<DriveRig> DriveRig::start(const DriveOptions& options) {
   const DriveParameters& p = options.drive;
-  if (!(options.rate_hz > 0.0) || !(options.duration_s > 0.0))
-    return Error{Errc::invalid_argument, "rate and duration must be positive"};
-  if (!(p.resistance_ohm > 0.0) || !(p.motor_inertia_kgm2 > 0.0) ||
-      !(p.load_inertia_kgm2 > 0.0) || !(p.stribeck_speed_radps > 0.0) || p.backlash_rad < 0.0 ||
-      p.coulomb_nm < 0.0 || p.breakaway_nm < p.coulomb_nm)
+  if (!(options.rate_hz >= 10.0 && options.rate_hz <= 20e3))
+    return Error{Errc::invalid_argument, "rate_hz must be between 10 and 20000"};
+  if (!(options.duration_s > 0.0 && options.duration_s * options.rate_hz <= 1e8))
+    return Error{Errc::invalid_argument, "duration_s must be positive, for at most 1e8 samples"};
+  if (options.adc_bits < 0 || options.adc_bits > 24)
+    return Error{Errc::invalid_argument, "adc_bits must be between 0 and 24"};
+  if (!(p.resistance_ohm > 0.0) || !(p.motor_inertia_kgm2 > 0.0) || !(p.load_inertia_kgm2 > 0.0) ||
+      !(p.stribeck_speed_radps > 0.0) || p.backlash_rad < 0.0 || p.coulomb_nm < 0.0 ||
+      p.breakaway_nm < p.coulomb_nm)
     return Error{Errc::invalid_argument,
                  "the drive's resistance, inertias and Stribeck speed must be positive, its "
                  "backlash and friction not negative, and breakaway at least the Coulomb friction"};
@@ -161,7 +164,7 @@ Result<DriveResult> simulate_drive(const DriveOptions& options) {
                         {"acceleration", unit("rad/s^2"), {}},
                         {"motor_angle", unit("rad"), {}},
                         {"motor_speed", unit("rad/s"), {}},
-                        {"contact", unit("1"), {}}};
+                        {"contact", {}, {}}};
   std::vector<double> row;
   const auto samples = static_cast<std::size_t>(std::llround(options.duration_s * options.rate_hz));
   // The voltage changes four times as often as it is recorded, as a controller's does.

@@ -30,8 +30,7 @@ TEST(Drive, SpeedsUpWithTheMechanicalTimeConstant) {
   p.coulomb_nm = p.breakaway_nm = p.load_coulomb_nm = p.viscous_nmspr = 0.0;
   Drive drive(p);
   const double K = p.torque_constant_nmpa;
-  const double tau =
-      (p.motor_inertia_kgm2 + p.load_inertia_kgm2) * p.resistance_ohm / (K * K);
+  const double tau = (p.motor_inertia_kgm2 + p.load_inertia_kgm2) * p.resistance_ohm / (K * K);
   drive.advance(10.0, tau);
   EXPECT_NEAR(drive.state().motor_radps, 10.0 / K * (1.0 - std::exp(-1.0)), 1e-3 * 10.0 / K);
 }
@@ -90,6 +89,12 @@ TEST(DriveRig, RefusesADriveThatCannotBe) {
   EXPECT_FALSE(simulate_drive(options));
   options = {};
   options.drive.load_inertia_kgm2 = 0.0;
+  EXPECT_FALSE(simulate_drive(options));
+  options = {};
+  options.adc_bits = 99;
+  EXPECT_FALSE(simulate_drive(options));
+  options = {};
+  options.rate_hz = 1e9;
   EXPECT_FALSE(simulate_drive(options));
 }
 

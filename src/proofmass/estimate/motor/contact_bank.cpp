@@ -6,8 +6,8 @@
 namespace proofmass::estimate::motor {
 namespace {
 
-using Eigen::RowVector3d;
-using Eigen::Vector3d;
+using Eigen::RowVector4d;
+using Eigen::Vector4d;
 using Weights = std::array<double, 3>;
 
 // Mean duration on a flank, and in the gap.
@@ -21,8 +21,8 @@ std::array<Weights, 3> chain(double step_s) {
 }
 
 // Likelihood of a scalar measurement, which also updates the state.
-double take(const RowVector3d& H, double error, double noise_variance, State& state) {
-  const Vector3d PH = state.P * H.transpose();
+double take(const RowVector4d& H, double error, double noise_variance, State& state) {
+  const Vector4d PH = state.P * H.transpose();
   const double S = H * PH + noise_variance;
   state.x += PH * (error / S);
   state.P -= PH * PH.transpose() / S;
@@ -31,10 +31,10 @@ double take(const RowVector3d& H, double error, double noise_variance, State& st
 }
 
 State mixed(const std::array<State, 3>& states, const Weights& weights) {
-  State out{.x = Vector3d::Zero(), .P = Eigen::Matrix3d::Zero()};
+  State out{.x = Vector4d::Zero(), .P = Eigen::Matrix4d::Zero()};
   for (std::size_t i = 0; i < 3; ++i) out.x += weights[i] * states[i].x;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vector3d apart = states[i].x - out.x;
+    const Vector4d apart = states[i].x - out.x;
     out.P += weights[i] * (states[i].P + apart * apart.transpose());
   }
   return out;
@@ -63,7 +63,9 @@ class Bank {
     const double half = p_.value[half_backlash];
     const double angle_variance = std::pow(p_.si(angle_noise), 2);
     const double current_variance = std::pow(p_.si(current_noise), 2);
-    const RowVector3d of_angle(1.0, -p_.value[delay], 0.0), of_current(0.0, 0.0, 1.0);
+    const RowVector4d of_angle(1.0, -p_.value[delay], 0.0, 0.0), of_current(0.0, 0.0, 1.0, 0.0),
+        of_voltage(0.0, 0.0, 0.0, 1.0);
+    const double voltage_variance = std::pow(p_.si(voltage_error), 2);
     for (std::size_t j = 0; j < 3; ++j) {
       const double flank = static_cast<double>(j) - 1.0;
       const double error = series_.angle_rad[k] - angle_error(series_, regimes_, p_, k) +
@@ -72,6 +74,7 @@ class Bank {
       weights_[j] *= take(of_angle, error, variance, next[j]);
       if (series_.has_current())
         take(of_current, series_.current_a[k] - next[j].x(2), current_variance, next[j]);
+      take(of_voltage, series_.voltage_v[k] - next[j].x(3), voltage_variance, next[j]);
     }
     normalise(weights_);
     states_ = next;

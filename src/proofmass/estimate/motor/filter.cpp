@@ -5,18 +5,18 @@
 namespace proofmass::estimate::motor {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::RowVector3d;
-using Eigen::Vector3d;
+using Eigen::Matrix4d;
+using Eigen::RowVector4d;
+using Eigen::Vector4d;
 
 struct Update {
-  RowVector3d H;
-  Vector3d gain;
+  RowVector4d H;
+  Vector4d gain;
   double innovation, variance;
 };
 
-Update update(const RowVector3d& H, double predicted_error, double noise_variance, State& state) {
-  const Vector3d PH = state.P * H.transpose();
+Update update(const RowVector4d& H, double predicted_error, double noise_variance, State& state) {
+  const Vector4d PH = state.P * H.transpose();
   const double S = H * PH + noise_variance;
   const Update out{.H = H, .gain = PH / S, .innovation = predicted_error, .variance = S};
   state.x += out.gain * predicted_error;
@@ -28,7 +28,7 @@ Update update(const RowVector3d& H, double predicted_error, double noise_varianc
 struct Forward {
   std::vector<State> after;
   std::vector<std::vector<Update>> updates;
-  std::vector<Matrix3d> F;
+  std::vector<Matrix4d> F;
 };
 
 // The one pass behind innovations and smoother.
@@ -41,7 +41,9 @@ void run(const Series& series,
   const Transitions steps = transitions(series, regimes, p);
   const double angle_variance = std::pow(p.si(angle_noise), 2);
   const double current_variance = std::pow(p.si(current_noise), 2);
-  const RowVector3d of_angle(1.0, -p.value[delay], 0.0), of_current(0.0, 0.0, 1.0);
+  const RowVector4d of_angle(1.0, -p.value[delay], 0.0, 0.0), of_current(0.0, 0.0, 1.0, 0.0),
+      of_voltage(0.0, 0.0, 0.0, 1.0);
+  const double voltage_variance = std::pow(p.si(voltage_error), 2);
   State state = first_state(series, regimes);
   for (std::size_t k = 0; k < series.size(); ++k) {
     if (regimes.contact[k] != 0 && std::isfinite(series.angle_rad[k])) {
@@ -51,6 +53,7 @@ void run(const Series& series,
     }
     if (series.has_current() && std::isfinite(series.current_a[k]))
       see(k, 1, update(of_current, series.current_a[k] - state.x(2), current_variance, state));
+    see(k, 2, update(of_voltage, series.voltage_v[k] - state.x(3), voltage_variance, state));
     const Transition& step = regimes.rests[k] != 0     ? steps.rests
                              : regimes.contact[k] != 0 ? steps.moves
                                                        : steps.floats;
@@ -75,7 +78,7 @@ Transitions transitions(const Series& series, const Regimes& regimes, const Para
   const double at_rest = (series.has_current() ? 1.5 : 5.0) * regimes.dry_torque;
   Transitions out;
   out.moves = out.rests = out.floats = moving(p, series.has_current(), series.step_s);
-  const Matrix3d unit = out.moves.from_torque * out.moves.from_torque.transpose();
+  const Matrix4d unit = out.moves.from_torque * out.moves.from_torque.transpose();
   out.floats.Q += in_gap * in_gap * unit;
   out.rests.Q += at_rest * at_rest * unit;
   return out;
@@ -99,17 +102,17 @@ Inputs inputs(const Series& series, const Regimes& regimes, const Parameters& p,
   const double w = 0.5 * (regimes.speed_radps[k] + regimes.speed_radps[k + 1]);
   const double angle = 0.5 * (regimes.angle_rad[k] + regimes.angle_rad[k + 1]);
   const double brushes = 0.5 * (regimes.current_sign[k] + regimes.current_sign[k + 1]);
-  return {.voltage_v = 0.5 * (series.voltage_v[k] + series.voltage_v[k + 1]) -
-                       p.value[brush_drop] * brushes,
+  return {.voltage_v = -p.value[brush_drop] * brushes,
           .torque_nm = -(regimes.rests[k] != 0 ? 0.0 : dry_friction_nm(p, w)) - p.value[load_torque] -
                        p.value[unbalance_cos] * std::cos(angle) -
                        p.value[unbalance_sin] * std::sin(angle)};
 }
 
 State first_state(const Series& series, const Regimes& regimes) {
-  State state{.x = {series.angle_rad[0], regimes.speed_radps[0], 0.0}, .P = Matrix3d::Zero()};
+  State state{.x = {series.angle_rad[0], regimes.speed_radps[0], 0.0, series.voltage_v[0]}, .P = Matrix4d::Zero()};
   state.P(0, 0) = 0.1;
   state.P(1, 1) = std::pow(10.0 * regimes.rest_radps, 2);
+  state.P(3, 3) = 1.0;
   if (series.has_current()) {
     state.x(2) = series.current_a[0];
     state.P(2, 2) = 1.0;
@@ -125,8 +128,8 @@ void advance(const Transition& step, const Inputs& in, State& state) {
 }
 
 void filter(const Series& series, const Regimes& regimes, const Parameters& p, Innovations& out) {
-  out.value.assign(2 * series.size(), 0.0);
-  out.variance.assign(2 * series.size(), 0.0);
+  out.value.assign(3 * series.size(), 0.0);
+  out.variance.assign(3 * series.size(), 0.0);
   run(
       series, regimes, p,
       [&](std::size_t k, std::size_t channel, const Update& one) {
@@ -135,8 +138,8 @@ void filter(const Series& series, const Regimes& regimes, const Parameters& p, I
         if (channel == 1 && (regimes.rests[k] != 0 || regimes.rests[before] != 0 ||
                              regimes.contact[before] == 0))
           return;
-        out.value[2 * k + channel] = one.innovation;
-        out.variance[2 * k + channel] = one.variance;
+        out.value[3 * k + channel] = one.innovation;
+        out.variance[3 * k + channel] = one.variance;
       },
       [](std::size_t, const State&, const Transition&) {});
 }
@@ -153,23 +156,23 @@ Smoothed smooth(const Series& series, const Regimes& regimes, const Parameters& 
       });
   Smoothed out{.angle_rad = std::vector<double>(n), .speed_radps = std::vector<double>(n),
                .speed_std_radps = std::vector<double>(n), .current_a = std::vector<double>(n)};
-  Vector3d lambda = Vector3d::Zero();
-  Matrix3d Lambda = Matrix3d::Zero();
+  Vector4d lambda = Vector4d::Zero();
+  Matrix4d Lambda = Matrix4d::Zero();
   for (std::size_t k = n; k-- > 0;) {
     const State& state = pass.after[k];
     if (k + 1 < n) {
       lambda = (pass.F[k].transpose() * lambda).eval();
       Lambda = (pass.F[k].transpose() * Lambda * pass.F[k]).eval();
     }
-    const Vector3d x = state.x - state.P * lambda;
-    const Matrix3d P = state.P - state.P * Lambda * state.P;
+    const Vector4d x = state.x - state.P * lambda;
+    const Matrix4d P = state.P - state.P * Lambda * state.P;
     out.angle_rad[k] = x(0);
     out.speed_radps[k] = x(1);
     out.speed_std_radps[k] = std::sqrt(std::max(P(1, 1), 0.0));
     out.current_a[k] = x(2);
     for (std::size_t j = pass.updates[k].size(); j-- > 0;) {
       const Update& one = pass.updates[k][j];
-      const Matrix3d kept = Matrix3d::Identity() - one.gain * one.H;
+      const Matrix4d kept = Matrix4d::Identity() - one.gain * one.H;
       lambda = (kept.transpose() * lambda - one.H.transpose() * (one.innovation / one.variance))
                    .eval();
       Lambda = (kept.transpose() * Lambda * kept +

@@ -55,8 +55,8 @@ struct Transitions {
 
 /// Mean and covariance of the states.
 struct State {
-  Eigen::Vector3d x;
-  Eigen::Matrix3d P;
+  Eigen::Vector4d x;
+  Eigen::Matrix4d P;
 };
 [[nodiscard]] State first_state(const Series& series, const Regimes& regimes);
 void advance(const Transition& step, const Inputs& in, State& state);

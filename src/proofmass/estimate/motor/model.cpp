@@ -5,17 +5,17 @@
 namespace proofmass::estimate::motor {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
+using Eigen::Matrix4d;
+using Eigen::Vector4d;
 
 // exp(A h) and its integral by their series, for a small A h.
 struct Exponential {
-  Matrix3d value, integral;
+  Matrix4d value, integral;
 };
 
-Exponential exponential(const Matrix3d& A, double h) {
-  Exponential out{Matrix3d::Identity(), Matrix3d::Identity() * h};
-  Matrix3d term = Matrix3d::Identity();
+Exponential exponential(const Matrix4d& A, double h) {
+  Exponential out{Matrix4d::Identity(), Matrix4d::Identity() * h};
+  Matrix4d term = Matrix4d::Identity();
   for (int n = 1; n <= 8; ++n) {
     term = term * A * (h / n);
     out.value += term;
@@ -25,10 +25,10 @@ Exponential exponential(const Matrix3d& A, double h) {
 }
 
 // A short step by series, then doubled: F(2h) = F², Q(2h) = F Q Fᵀ + Q, G(2h) = F G + G.
-Transition discretise(const Matrix3d& A,
-                      const Matrix3d& density,
-                      const Vector3d& voltage,
-                      const Vector3d& torque,
+Transition discretise(const Matrix4d& A,
+                      const Matrix4d& density,
+                      const Vector4d& voltage,
+                      const Vector4d& torque,
                       double step_s) {
   constexpr double small = 0.25;
   const double size = A.cwiseAbs().rowwise().sum().maxCoeff() * step_s;
@@ -42,7 +42,7 @@ Transition discretise(const Matrix3d& A,
                  .from_voltage = whole.integral * voltage,
                  .from_torque = whole.integral * torque};
   for (int k = 0; k < doublings; ++k) {
-    const Matrix3d F = out.F;
+    const Matrix4d F = out.F;
     out.Q = (F * out.Q * F.transpose() + out.Q).eval();
     out.from_voltage = (F * out.from_voltage + out.from_voltage).eval();
     out.from_torque = (F * out.from_torque + out.from_torque).eval();
@@ -55,20 +55,23 @@ Transition discretise(const Matrix3d& A,
 
 Transition moving(const Parameters& p, bool has_current, double step_s) {
   const double J = p.si(inertia);
-  Matrix3d A = Matrix3d::Zero(), density = Matrix3d::Zero();
+  Matrix4d A = Matrix4d::Zero(), density = Matrix4d::Zero();
   A(0, 1) = 1.0;
   A(1, 1) = -p.value[viscous] / J;
   density(1, 1) = std::pow(p.si(torque_noise) / J, 2);
-  Vector3d voltage(0.0, 1.0 / J, 0.0);
+  Vector4d voltage(0.0, 1.0 / J, 0.0, 0.0);
+  A(1, 3) = 1.0 / J;
+  density(3, 3) = std::pow(p.si(voltage_noise), 2);
   if (has_current) {
     const double K = p.si(torque_constant), L = p.si(inductance);
     A(1, 2) = K / J;
     A(2, 1) = -K / L;
     A(2, 2) = -p.si(resistance) / L;
-    density(2, 2) = std::pow(p.si(voltage_noise) / L, 2);
-    voltage = {0.0, 0.0, 1.0 / L};
+    A(1, 3) = 0.0;
+    A(2, 3) = 1.0 / L;
+    voltage = {0.0, 0.0, 1.0 / L, 0.0};
   }
-  return discretise(A, density, voltage, {0.0, 1.0 / J, 0.0}, step_s);
+  return discretise(A, density, voltage, {0.0, 1.0 / J, 0.0, 0.0}, step_s);
 }
 
 }  // namespace proofmass::estimate::motor

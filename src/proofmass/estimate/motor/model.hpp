@@ -8,8 +8,8 @@ namespace proofmass::estimate::motor {
 
 /// One step of the states (motor angle, speed, current) with constant inputs.
 struct Transition {
-  Eigen::Matrix3d F, Q;
-  Eigen::Vector3d from_voltage, from_torque;
+  Eigen::Matrix4d F, Q;
+  Eigen::Vector4d from_voltage, from_torque;
 };
 
 /// Of the drive while it moves:

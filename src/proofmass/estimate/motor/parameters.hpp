@@ -31,9 +31,10 @@ enum Index : std::size_t {
   radius,     ///< of a sensor that is not opposed by another, m
   delay,      ///< of the angle against the voltage, s
   torque_noise,
-  voltage_noise,  ///< √density, log
+  voltage_noise,  ///< √density of the torque, and of the voltage's random walk, log
   current_noise,
-  angle_noise,  ///< standard deviation of a sample, log
+  angle_noise,
+  voltage_error,  ///< standard deviation of a sample, log
   parameter_count
 };
 

@@ -63,7 +63,7 @@ Score score_of(const Study& study, const Parameters& p, const Innovations& at) {
   Score out{.gradient = VectorXd::Zero(m), .information = D.transpose() * D,
             .scatter = MatrixXd::Zero(m, m)};
   const auto per_block =
-      std::max<std::size_t>(2, 2 * static_cast<std::size_t>(block_s / study.series.step_s));
+      std::max<std::size_t>(3, 3 * static_cast<std::size_t>(block_s / study.series.step_s));
   std::size_t blocks = 0;
   for (std::size_t first = 0; first < at.value.size(); first += per_block) {
     VectorXd part = VectorXd::Zero(m);

@@ -77,7 +77,6 @@ void set_electrical(const Series& series, double top_v, const Vector2d& found, P
   set_log(p, torque_constant, K, anything);
   set_log(p, inductance, R * 0.004, 1.0);  // of small motors: 1 to 15 ms
   set(p, brush_drop, 0.0, 0.0, 0.02 * top_v);
-  set_log(p, voltage_noise, 0.01 * top_v * std::sqrt(series.step_s), anything);
   const double noise = std::max(sample_noise(series.current_a), 1e-6 * largest(series.current_a));
   set_log(p, current_noise, noise, anything);
 }
@@ -112,6 +111,12 @@ Parameters start(const Series& series, const Regimes& regimes) {
   set_log(p, stribeck_speed, 0.06 * top_radps, 0.4);
   for (const std::size_t i : {unbalance_cos, unbalance_sin, load_torque})
     set(p, i, 0.0, 0.0, 0.5 * torque);
+  double squares = 0.0;
+  for (std::size_t k = 1; k < series.size(); ++k)
+    squares += std::pow(series.voltage_v[k] - series.voltage_v[k - 1], 2);
+  const double span_s = series.step_s * static_cast<double>(series.size());
+  set_log(p, voltage_noise, std::sqrt(squares / span_s), 5.0);
+  set_log(p, voltage_error, std::max(sample_noise(series.voltage_v), 1e-4 * top_v), 5.0);
   set_log(p, torque_noise, 0.02 * torque * std::sqrt(0.01), 5.0);
   set_measurement(series, p);
   return p;
