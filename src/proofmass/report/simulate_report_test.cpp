@@ -65,7 +65,8 @@ TEST(Schemas, Simulate) {
   const auto slide = simulate::default_options(simulate::Procedure::slide);
   const simulate::ProcedureResult on_table = result_of(tumble), by_hand = result_of(hand),
                                   along = result_of(slide);
-  const simulate::DriveOptions driven{.duration_s = 0.1};
+  simulate::DriveOptions driven;
+  driven.duration_s = 0.1;
   const simulate::DriveResult drive = simulate::simulate_drive(driven).value();
   expect_schema_of_kinds(
       "Simulated recording and its truth: of the rig, or of a procedure with --procedure.",
