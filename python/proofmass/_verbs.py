@@ -801,7 +801,7 @@ def simulate(
     signal: Optional[str] = None,
     progress: Progress = None,
 ) -> Simulated:
-    """The rig, a calibration or a slide as a digital twin.
+    """The rig, a calibration, a slide or the drive as a digital twin.
 
     Parameters
     ----------
@@ -822,8 +822,8 @@ def simulate(
     adc_bits : int, optional
         Resolution of the converter.
     procedure : str, optional
-        Instead of the rig, a calibration (tumble, four-position, six-position or multi-position) or a
-        slide along a line.
+        Instead of the rig, a calibration (tumble, four-position, six-position or multi-position), a
+        slide along a line, or motor: the drive of the rig.
     session : int, optional
         Same sensor and table, other noise and placement (needs procedure).
     positions : int, optional

@@ -78,6 +78,21 @@ class SimulateProcedure(CommandTest):
                 mean = sum(read[f"acc_{letter} (m/s^2)"][k] for k in rows) / len(rows)
                 self.assertAlmostEqual(mean, position["force_mps2"][axis] + drift[axis], delta=0.01)
 
+    def test_a_drive_knows_its_friction_and_its_gear(self):
+        document = self.document("simulate", "--procedure", "motor", "--duration", "6", "--seed", "3", "-o", "drive.csv")
+        figures = document["truth"]
+        self.assertEqual(document["procedure"], "motor")
+        self.assertEqual([channel["name"] for channel in document["channels"][:2]], ["voltage", "current"])
+        truth = self.columns("drive.truth.csv")
+        play = [motor - angle + truth["angle (rad)"][0] for motor, angle in zip(truth["motor_angle (rad)"], truth["angle (rad)"])]
+        # From one flank to the other: the whole backlash, and never more.
+        self.assertAlmostEqual(max(play) - min(play), figures["backlash"], delta=1e-4)
+        self.assertEqual(set(truth["contact"]), {-1.0, 0.0, 1.0})
+
+    def test_a_drive_takes_no_flags_of_other_procedures(self):
+        for flags in (["--strokes", "3"], ["--rpm", "11"], ["--positions", "4"], ["--print-config"]):
+            self.expect_failure(USAGE, "simulate", "--procedure", "motor", *flags, "-o", "drive.csv")
+
     def test_a_slide_knows_where_it_was(self):
         document = self.document("simulate", "--procedure", "slide", "--strokes", "3", "--length", "0.5", "--elevation", "30",
                                  "--gyro", "--gravity-removed", "-o", "slide.csv")

@@ -18,10 +18,10 @@ namespace {
 void add_procedure_flags(CLI::App& verb, SimulateCommand& command) {
   CLI::Option* procedure =
       verb.add_option("--procedure", command.procedure,
-                      "instead of the rig: tumble, four-position, six-position, multi-position, or "
-                      "slide (motion along a line)");
-  procedure->type_name("NAME")->check(
-      CLI::IsMember({"tumble", "four-position", "six-position", "multi-position", "slide"}));
+                      "instead of the rig: tumble, four-position, six-position, multi-position, "
+                      "slide (motion along a line), or motor (the rig's drive)");
+  procedure->type_name("NAME")->check(CLI::IsMember(
+      {"tumble", "four-position", "six-position", "multi-position", "slide", "motor"}));
   const auto add = [&](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->needs(procedure)->group("Procedure");
   };
@@ -78,7 +78,8 @@ void add_simulate_flags(CLI::App& verb, SimulateCommand& command) {
   verb.footer(
       "Examples:\n  proofmass simulate --rpm 15 --seed 7 -o rig.csv\n"
       "  proofmass simulate --procedure multi-position -o poses.csv\n"
-      "  proofmass simulate --procedure slide --length 0.5 -o slide.csv");
+      "  proofmass simulate --procedure slide --length 0.5 -o slide.csv\n"
+      "  proofmass simulate --procedure motor -o drive.csv");
 }
 
 void set_speed(const SimulateCommand& command, std::vector<simulate::SpeedSegment>& profile) {
@@ -126,6 +127,7 @@ std::string truth_name(const std::string& file) {
 }
 
 void run_simulate(const SimulateCommand& command) {
+  if (command.procedure == "motor") return run_drive(command);
   if (!command.procedure.empty()) return run_procedure(command);
   const OutputFlags& flags = command.output;
   const simulate::RigOptions options = rig_options(command);
@@ -151,7 +153,7 @@ Verb simulate_verb() {
   return make_verb<SimulateCommand>(
       {.name = "simulate",
        .group = "Study",
-       .help = "digital twin of the rig, of a calibration procedure or of a slide"},
+       .help = "digital twin of the rig, of a calibration procedure, of a slide or of the drive"},
       add_simulate_flags, run_simulate);
 }
 

@@ -158,6 +158,29 @@ Fields procedure_fields(const ProcedureReport& report) {
   return fields;
 }
 
+// At the shaft of the load; inertia and dry friction are the sums of motor and load.
+Fields drive_truth(const simulate::DriveParameters& p) {
+  return {
+      field::number("resistance", p.resistance_ohm, {.meaning = "ohm"}),
+      field::number("torque_constant", p.torque_constant_nmpa, {.meaning = "N*m/A"}),
+      field::number("inertia", p.motor_inertia_kgm2 + p.load_inertia_kgm2, {.meaning = "kg*m^2"}),
+      field::number("viscous_friction", p.viscous_nmspr, {.meaning = "N*m*s/rad"}),
+      field::number("coulomb_friction", p.coulomb_nm + p.load_coulomb_nm, {.meaning = "N*m"}),
+      field::number("breakaway_friction", p.breakaway_nm + p.load_coulomb_nm, {.meaning = "N*m"}),
+      field::number("stribeck_speed", p.stribeck_speed_radps, {.meaning = "rad/s"}),
+      field::number("unbalance", p.unbalance_nm, {.meaning = "N*m"}),
+      field::number("backlash", p.backlash_rad, {.meaning = "rad"})};
+}
+
+Fields drive_fields(const DriveReport& report) {
+  Fields fields{field::choice("procedure", "motor", {"motor"})};
+  append(fields, file_fields(report));
+  fields.push_back(field::count("seed", report.options.seed));
+  append(fields, recording_fields(report));
+  fields.push_back(field::object("truth", drive_truth(report.options.drive)));
+  return fields;
+}
+
 // "0.22589, −0.06487, 0.14264": more digits than for estimates, since the values are exact.
 std::string three(const sensor::AxisFigures& values, double to_shown, int decimals) {
   std::string text;
@@ -211,6 +234,22 @@ Document describe(const ProcedureReport& report) {
   document.page.sections = {
       {.heading = "Result",
        .tables = {std::move(files), true_sensor_table(truth.sensor.calibration)},
+       .on_terminal = true}};
+  return document;
+}
+
+Document describe(const DriveReport& report) {
+  const Recording& recording = report.result.recording;
+  const Motion load = motion(report.result.truth);
+  Document document = document_of(
+      report,
+      fmt::format("Simulated drive, {} at {} Hz, seed {}: top speed {} rpm.",
+                  duration_words(recording.duration_s()), compact(report.options.rate_hz, 6),
+                  report.options.seed, significant(load.peak_rpm, 4)),
+      drive_fields(report));
+  document.page.sections = {
+      {.heading = "Result",
+       .tables = {files_table(report, "angles and speeds of load and motor, contact of the gear")},
        .on_terminal = true}};
   return document;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "proofmass/report/document.hpp"
+#include "proofmass/simulate/drive_rig.hpp"
 #include "proofmass/simulate/procedure.hpp"
 #include "proofmass/simulate/rig.hpp"
 
@@ -28,5 +29,15 @@ struct ProcedureReport {
 
 /// The same for a calibration procedure or a slide, with the figures of the true sensor.
 [[nodiscard]] Document describe(const ProcedureReport& report);
+
+struct DriveReport {
+  std::vector<std::string> inputs{};
+  std::string output, truth{};  ///< files written
+  const simulate::DriveOptions& options;
+  const simulate::DriveResult& result;
+};
+
+/// The same for the drive, with its true figures.
+[[nodiscard]] Document describe(const DriveReport& report);
 
 }  // namespace proofmass::report

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include "cli/console.hpp"
+#include "cli/exit_status.hpp"
+#include "cli/output.hpp"
+#include "proofmass/report/simulate_report.hpp"
+#include "proofmass/simulate/drive_rig.hpp"
+#include "simulate/modes.hpp"
+
+namespace proofmass::app {
+namespace {
+
+void refuse_other_flags(const SimulateCommand& command) {
+  const char* flag = !command.rig.empty()       ? "a description"
+                     : command.rpm              ? "--rpm"
+                     : command.datasheet_errors ? "--datasheet-errors"
+                     : command.positions        ? "--positions"
+                     : command.dwell_s          ? "--dwell"
+                     : command.supply_v         ? "--supply"
+                     : command.session          ? "--session"
+                     : command.strokes          ? "--strokes"
+                     : command.repetitions      ? "--repetitions"
+                     : command.length_m         ? "--length"
+                     : command.stroke_s         ? "--stroke-time"
+                     : command.elevation_deg    ? "--elevation"
+                     : command.gravity_removed  ? "--gravity-removed"
+                     : command.gyro             ? "--gyro"
+                     : command.print_config     ? "--print-config"
+                     : !command.signal.empty()  ? "--signal"
+                                                : nullptr;
+  if (flag != nullptr)
+    throw Failure(usage, fmt::format("{} is not for --procedure motor: leave it out", flag));
+}
+
+}  // namespace
+
+void run_drive(const SimulateCommand& command) {
+  const OutputFlags& flags = command.output;
+  refuse_other_flags(command);
+  simulate::DriveOptions options;
+  if (command.seed) options.seed = *command.seed;
+  if (command.rate_hz) options.rate_hz = *command.rate_hz;
+  if (command.duration_s) options.duration_s = *command.duration_s;
+  if (command.gravity_mps2) options.gravity_mps2 = *command.gravity_mps2;
+  if (command.adc_bits) options.adc_bits = *command.adc_bits;
+  if (flags.output.empty())
+    throw Failure(usage, "simulate: no --output: say where to, -o drive.csv");
+  const simulate::DriveResult result = need(simulate::simulate_drive(options), Stage::computing);
+  report::DriveReport report{.output = flags.output, .options = options, .result = result};
+  write_series(result.recording, flags);
+  if (flags.output != "-") {
+    report.truth = truth_name(flags.output);
+    write_series(result.truth, with_output(flags, report.truth));
+  }
+  finish(report::describe(report), {}, flags);
+}
+
+}  // namespace proofmass::app
