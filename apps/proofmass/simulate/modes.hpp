@@ -10,7 +10,7 @@ namespace proofmass::app {
 void run_procedure(const SimulateCommand& command);
 
 /// `simulate --procedure motor`. Throws Failure.
-void run_drive(const SimulateCommand& command);
+void run_motor(const SimulateCommand& command);
 
 /// File of the true values beside a recording: "rig.csv" → "rig.truth.csv".
 [[nodiscard]] std::string truth_name(const std::string& file);

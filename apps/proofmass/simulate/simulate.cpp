@@ -127,7 +127,7 @@ std::string truth_name(const std::string& file) {
 }
 
 void run_simulate(const SimulateCommand& command) {
-  if (command.procedure == "motor") return run_drive(command);
+  if (command.procedure == "motor") return run_motor(command);
   if (!command.procedure.empty()) return run_procedure(command);
   const OutputFlags& flags = command.output;
   const simulate::RigOptions options = rig_options(command);

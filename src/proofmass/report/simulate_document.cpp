@@ -159,7 +159,7 @@ Fields procedure_fields(const ProcedureReport& report) {
 }
 
 // At the shaft of the load; inertia and dry friction are the sums of motor and load.
-Fields drive_truth(const simulate::DriveParameters& p) {
+Fields motor_truth(const simulate::GearMotorParameters& p) {
   return {
       field::number("resistance", p.resistance_ohm, {.meaning = "ohm"}),
       field::number("torque_constant", p.torque_constant_nmpa, {.meaning = "N*m/A"}),
@@ -172,12 +172,12 @@ Fields drive_truth(const simulate::DriveParameters& p) {
       field::number("backlash", p.backlash_rad, {.meaning = "rad"})};
 }
 
-Fields drive_fields(const DriveReport& report) {
+Fields motor_fields(const MotorReport& report) {
   Fields fields{field::choice("procedure", "motor", {"motor"})};
   append(fields, file_fields(report));
   fields.push_back(field::count("seed", report.options.seed));
   append(fields, recording_fields(report));
-  fields.push_back(field::object("truth", drive_truth(report.options.drive)));
+  fields.push_back(field::object("truth", motor_truth(report.options.drive)));
   return fields;
 }
 
@@ -238,7 +238,7 @@ Document describe(const ProcedureReport& report) {
   return document;
 }
 
-Document describe(const DriveReport& report) {
+Document describe(const MotorReport& report) {
   const Recording& recording = report.result.recording;
   const Motion load = motion(report.result.truth);
   Document document = document_of(
@@ -246,7 +246,7 @@ Document describe(const DriveReport& report) {
       fmt::format("Simulated drive, {} at {} Hz, seed {}: top speed {} rpm.",
                   duration_words(recording.duration_s()), compact(report.options.rate_hz, 6),
                   report.options.seed, significant(load.peak_rpm, 4)),
-      drive_fields(report));
+      motor_fields(report));
   document.page.sections = {
       {.heading = "Result",
        .tables = {files_table(report, "angles and speeds of load and motor, contact of the gear")},

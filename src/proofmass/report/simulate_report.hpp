@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "proofmass/report/document.hpp"
-#include "proofmass/simulate/drive_rig.hpp"
+#include "proofmass/simulate/motor_rig.hpp"
 #include "proofmass/simulate/procedure.hpp"
 #include "proofmass/simulate/rig.hpp"
 
@@ -30,14 +30,14 @@ struct ProcedureReport {
 /// The same for a calibration procedure or a slide, with the figures of the true sensor.
 [[nodiscard]] Document describe(const ProcedureReport& report);
 
-struct DriveReport {
+struct MotorReport {
   std::vector<std::string> inputs{};
   std::string output, truth{};  ///< files written
-  const simulate::DriveOptions& options;
-  const simulate::DriveResult& result;
+  const simulate::MotorOptions& options;
+  const simulate::MotorResult& result;
 };
 
 /// The same for the drive, with its true figures.
-[[nodiscard]] Document describe(const DriveReport& report);
+[[nodiscard]] Document describe(const MotorReport& report);
 
 }  // namespace proofmass::report

@@ -65,16 +65,16 @@ TEST(Schemas, Simulate) {
   const auto slide = simulate::default_options(simulate::Procedure::slide);
   const simulate::ProcedureResult on_table = result_of(tumble), by_hand = result_of(hand),
                                   along = result_of(slide);
-  simulate::DriveOptions driven;
+  simulate::MotorOptions driven;
   driven.duration_s = 0.1;
-  const simulate::DriveResult drive = simulate::simulate_drive(driven).value();
+  const simulate::MotorResult drive = simulate::simulate_motor(driven).value();
   expect_schema_of_kinds(
       "Simulated recording and its truth: of the rig, or of a procedure with --procedure.",
       {{describe(SimulateReport{{}, "a.csv", "", rig, turns})},
        {describe(ProcedureReport{.output = "a.csv", .options = tumble, .result = on_table}),
         describe(ProcedureReport{.output = "a.csv", .options = hand, .result = by_hand}),
         describe(ProcedureReport{.output = "a.csv", .options = slide, .result = along})},
-       {describe(DriveReport{.output = "a.csv", .options = driven, .result = drive})}});
+       {describe(MotorReport{.output = "a.csv", .options = driven, .result = drive})}});
 }
 
 }  // namespace

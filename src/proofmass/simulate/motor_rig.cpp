@@ -1,4 +1,4 @@
-#include "proofmass/simulate/drive_rig.hpp"
+#include "proofmass/simulate/motor_rig.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double voltage_range_v = 100.0, current_range_a = 4.0;
 
-RigOptions sensor_options(const DriveOptions& o) {
+RigOptions sensor_options(const MotorOptions& o) {
   RigOptions rig;
   rig.seed = o.seed;
   rig.rate_hz = o.rate_hz;
@@ -32,7 +32,7 @@ double quantised(double value, double range, int bits) {
   return std::clamp(step * std::round(value / step), -range, range);
 }
 
-Recording empty(const DriveOptions& options, const char* source) {
+Recording empty(const MotorOptions& options, const char* source) {
   Recording recording;
   recording.source = source;
   recording.format = "simulation";
@@ -50,9 +50,9 @@ double exploring_voltage(double t_s) {
          5.0 * std::sin(turn * 1.3 * t_s);
 }
 
-class DriveRig::Parts {
+class MotorRig::Parts {
  public:
-  explicit Parts(const DriveOptions& o)
+  explicit Parts(const MotorOptions& o)
       : options(o), rig(sensor_options(o)), drive(o.drive), noise_(o.seed, "drive measurements") {
     channels.push_back({"voltage", unit("V"), {}});
     channels.push_back({"current", unit("A"), {}});
@@ -68,7 +68,7 @@ class DriveRig::Parts {
 
   void measure(std::vector<double>& row) {
     row.clear();
-    const DriveState& at = drive.state();
+    const GearMotorState& at = drive.state();
     row.push_back(quantised(voltage_v + options.voltage_noise_v * noise_.normal(), voltage_range_v,
                             options.adc_bits));
     row.push_back(quantised(at.current_a + options.current_noise_a * noise_.normal(),
@@ -90,9 +90,9 @@ class DriveRig::Parts {
     }
   }
 
-  DriveOptions options;
+  MotorOptions options;
   RigOptions rig;
-  Drive drive;
+  GearMotor drive;
   std::vector<Channel> channels;
   double time_s = 0.0, voltage_v = 0.0;
 
@@ -102,8 +102,8 @@ class DriveRig::Parts {
   std::vector<AxisTwin> axes_;
 };
 
-Result<DriveRig> DriveRig::start(const DriveOptions& options) {
-  const DriveParameters& p = options.drive;
+Result<MotorRig> MotorRig::start(const MotorOptions& options) {
+  const GearMotorParameters& p = options.drive;
   if (!(options.rate_hz >= 10.0 && options.rate_hz <= 20e3))
     return Error{Errc::invalid_argument, "rate_hz must be between 10 and 20000"};
   if (!(options.duration_s > 0.0 && options.duration_s * options.rate_hz <= 1e8))
@@ -117,46 +117,46 @@ Result<DriveRig> DriveRig::start(const DriveOptions& options) {
                  "the drive's resistance, inertias and Stribeck speed must be positive, its "
                  "backlash and friction not negative, and breakaway at least the Coulomb friction"};
   if (const Status good = check(sensor_options(options)); !good) return good.error();
-  return DriveRig(options);
+  return MotorRig(options);
 }
 
-DriveRig::DriveRig(const DriveOptions& options) : parts_(std::make_unique<Parts>(options)) {}
-DriveRig::DriveRig(DriveRig&&) noexcept = default;
-DriveRig& DriveRig::operator=(DriveRig&&) noexcept = default;
-DriveRig::~DriveRig() = default;
+MotorRig::MotorRig(const MotorOptions& options) : parts_(std::make_unique<Parts>(options)) {}
+MotorRig::MotorRig(MotorRig&&) noexcept = default;
+MotorRig& MotorRig::operator=(MotorRig&&) noexcept = default;
+MotorRig::~MotorRig() = default;
 
-const std::vector<Channel>& DriveRig::channels() const {
+const std::vector<Channel>& MotorRig::channels() const {
   return parts_->channels;
 }
 
-void DriveRig::measure(std::vector<double>& row) {
+void MotorRig::measure(std::vector<double>& row) {
   parts_->measure(row);
 }
 
-void DriveRig::advance(double voltage_v) {
+void MotorRig::advance(double voltage_v) {
   advance(voltage_v, 1.0 / parts_->options.rate_hz);
 }
 
-void DriveRig::advance(double voltage_v, double duration_s) {
+void MotorRig::advance(double voltage_v, double duration_s) {
   const double limit = parts_->options.supply_limit_v;
   parts_->voltage_v = std::clamp(voltage_v, -limit, limit);
   parts_->drive.advance(parts_->voltage_v, duration_s);
   parts_->time_s += duration_s;
 }
 
-const DriveState& DriveRig::state() const {
+const GearMotorState& MotorRig::state() const {
   return parts_->drive.state();
 }
 
-double DriveRig::angle_rad() const {
+double MotorRig::angle_rad() const {
   return parts_->options.start_angle_rad + parts_->drive.state().load_rad;
 }
 
-Result<DriveResult> simulate_drive(const DriveOptions& options) {
-  Result<DriveRig> started = DriveRig::start(options);
+Result<MotorResult> simulate_motor(const MotorOptions& options) {
+  Result<MotorRig> started = MotorRig::start(options);
   if (!started) return started.error();
-  DriveRig rig = std::move(started).value();
-  DriveResult out{.recording = empty(options, "simulated drive"),
+  MotorRig rig = std::move(started).value();
+  MotorResult out{.recording = empty(options, "simulated drive"),
                   .truth = empty(options, "simulated drive, truth")};
   out.recording.channels = rig.channels();
   out.truth.channels = {{"angle", unit("rad"), {}},
@@ -172,7 +172,7 @@ Result<DriveResult> simulate_drive(const DriveOptions& options) {
   for (std::size_t k = 0; k < samples; ++k) {
     rig.measure(row);
     for (std::size_t c = 0; c < row.size(); ++c) out.recording.channels[c].values.push_back(row[c]);
-    const DriveState& at = rig.state();
+    const GearMotorState& at = rig.state();
     const std::array truth{rig.angle_rad(), at.load_radps,  at.load_radps2,
                            at.motor_rad,    at.motor_radps, static_cast<double>(at.contact)};
     for (std::size_t c = 0; c < truth.size(); ++c) out.truth.channels[c].values.push_back(truth[c]);

@@ -4,7 +4,7 @@
 #include "cli/exit_status.hpp"
 #include "cli/output.hpp"
 #include "proofmass/report/simulate_report.hpp"
-#include "proofmass/simulate/drive_rig.hpp"
+#include "proofmass/simulate/motor_rig.hpp"
 #include "simulate/modes.hpp"
 
 namespace proofmass::app {
@@ -34,10 +34,10 @@ void refuse_other_flags(const SimulateCommand& command) {
 
 }  // namespace
 
-void run_drive(const SimulateCommand& command) {
+void run_motor(const SimulateCommand& command) {
   const OutputFlags& flags = command.output;
   refuse_other_flags(command);
-  simulate::DriveOptions options;
+  simulate::MotorOptions options;
   if (command.seed) options.seed = *command.seed;
   if (command.rate_hz) options.rate_hz = *command.rate_hz;
   if (command.duration_s) options.duration_s = *command.duration_s;
@@ -45,8 +45,8 @@ void run_drive(const SimulateCommand& command) {
   if (command.adc_bits) options.adc_bits = *command.adc_bits;
   if (flags.output.empty())
     throw Failure(usage, "simulate: no --output: say where to, -o drive.csv");
-  const simulate::DriveResult result = need(simulate::simulate_drive(options), Stage::computing);
-  report::DriveReport report{.output = flags.output, .options = options, .result = result};
+  const simulate::MotorResult result = need(simulate::simulate_motor(options), Stage::computing);
+  report::MotorReport report{.output = flags.output, .options = options, .result = result};
   write_series(result.recording, flags);
   if (flags.output != "-") {
     report.truth = truth_name(flags.output);

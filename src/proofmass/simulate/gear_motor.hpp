@@ -6,7 +6,7 @@ namespace proofmass::simulate {
 /// The defaults are the thesis's gear motor (A.2.1): 90 V, 1.27 A and 31 rpm at full load with 114
 /// W in and 93 W at the armature give R = 13 ohm and K = 22.6 V s/rad; inertia, friction and
 /// backlash, which no data sheet states, are usual ones of a motor and gear of this size.
-struct DriveParameters {
+struct GearMotorParameters {
   double resistance_ohm = 13.0;
   double inductance_h = 0.06;
   double torque_constant_nmpa = 22.6;  ///< and back-EMF constant, V s/rad
@@ -21,7 +21,7 @@ struct DriveParameters {
   double unbalance_phase_rad = 0.0;    ///< the load's torque is −unbalance · cos(angle + phase)
 };
 
-struct DriveState {
+struct GearMotorState {
   double current_a = 0.0;
   double motor_rad = 0.0, motor_radps = 0.0;
   double load_rad = 0.0, load_radps = 0.0, load_radps2 = 0.0;
@@ -37,14 +37,14 @@ struct DriveState {
 /// A body at rest stays there while the torque on it is below breakaway. At the end of the gap the
 /// speeds become equal and the momentum is kept; the flanks part where the gear would have to pull.
 /// Integrated in steps of at most 50 µs.
-class Drive {
+class GearMotor {
  public:
-  explicit Drive(const DriveParameters& parameters);
+  explicit GearMotor(const GearMotorParameters& parameters);
 
   /// Constant voltage for this time.
   void advance(double voltage_v, double duration_s);
-  [[nodiscard]] const DriveState& state() const { return state_; }
-  [[nodiscard]] const DriveParameters& parameters() const { return p_; }
+  [[nodiscard]] const GearMotorState& state() const { return state_; }
+  [[nodiscard]] const GearMotorParameters& parameters() const { return p_; }
 
  private:
   void step(double voltage_v, double h_s);
@@ -54,8 +54,8 @@ class Drive {
   [[nodiscard]] double motor_friction(double speed_radps) const;
   [[nodiscard]] double unbalance() const;
 
-  DriveParameters p_;
-  DriveState state_;
+  GearMotorParameters p_;
+  GearMotorState state_;
 };
 
 }  // namespace proofmass::simulate

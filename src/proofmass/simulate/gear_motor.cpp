@@ -1,4 +1,4 @@
-#include "proofmass/simulate/drive.hpp"
+#include "proofmass/simulate/gear_motor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,27 +22,27 @@ double with_friction(double speed, double torque_nm, double friction_nm, double 
 
 }  // namespace
 
-Drive::Drive(const DriveParameters& parameters) : p_(parameters) {
+GearMotor::GearMotor(const GearMotorParameters& parameters) : p_(parameters) {
   meet(1);
   state_.load_rad = -0.5 * p_.backlash_rad;
 }
 
-void Drive::advance(double voltage_v, double duration_s) {
+void GearMotor::advance(double voltage_v, double duration_s) {
   constexpr double longest_s = 50e-6;
   const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / longest_s - 1e-9)));
   for (int k = 0; k < steps; ++k) step(voltage_v, duration_s / steps);
 }
 
-double Drive::motor_friction(double speed_radps) const {
+double GearMotor::motor_friction(double speed_radps) const {
   const double ratio = speed_radps / p_.stribeck_speed_radps;
   return p_.coulomb_nm + (p_.breakaway_nm - p_.coulomb_nm) * std::exp(-ratio * ratio);
 }
 
-double Drive::unbalance() const {
+double GearMotor::unbalance() const {
   return p_.unbalance_nm * std::cos(state_.load_rad + p_.unbalance_phase_rad);
 }
 
-void Drive::meet(int flank) {
+void GearMotor::meet(int flank) {
   const double J = p_.motor_inertia_kgm2, Jl = p_.load_inertia_kgm2;
   const double common = (J * state_.motor_radps + Jl * state_.load_radps) / (J + Jl);
   state_.motor_radps = state_.load_radps = common;
@@ -50,7 +50,7 @@ void Drive::meet(int flank) {
   state_.load_rad = state_.motor_rad - 0.5 * flank * p_.backlash_rad;
 }
 
-void Drive::step_together(double motor_nm, double h_s) {
+void GearMotor::step_together(double motor_nm, double h_s) {
   const double J = p_.motor_inertia_kgm2, Jl = p_.load_inertia_kgm2, w = state_.motor_radps;
   const double next = with_friction(w, motor_nm - p_.viscous_nmspr * w - unbalance(),
                                     motor_friction(w) + p_.load_coulomb_nm, J + Jl, h_s);
@@ -71,7 +71,7 @@ void Drive::step_together(double motor_nm, double h_s) {
   state_.load_rad = state_.motor_rad - 0.5 * state_.contact * p_.backlash_rad;
 }
 
-void Drive::step_apart(double motor_nm, double h_s) {
+void GearMotor::step_apart(double motor_nm, double h_s) {
   const double w = state_.motor_radps, wl = state_.load_radps;
   const double next = with_friction(w, motor_nm - p_.viscous_nmspr * w, motor_friction(w),
                                     p_.motor_inertia_kgm2, h_s);
@@ -87,7 +87,7 @@ void Drive::step_apart(double motor_nm, double h_s) {
   if (apart <= -half && next <= load) meet(-1);
 }
 
-void Drive::step(double voltage_v, double h_s) {
+void GearMotor::step(double voltage_v, double h_s) {
   // The current with the speed as it is: exact for a short step.
   const double settled =
       (voltage_v - p_.torque_constant_nmpa * state_.motor_radps) / p_.resistance_ohm;

@@ -8,18 +8,18 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/units.hpp"
-#include "proofmass/simulate/drive.hpp"
+#include "proofmass/simulate/gear_motor.hpp"
 #include "proofmass/simulate/rig.hpp"
 
 // The rig with its motor: the voltage is given, the wheel's motion follows.
 namespace proofmass::simulate {
 
-struct DriveOptions {
+struct MotorOptions {
   std::uint64_t seed = 1;
   double rate_hz = 200.0;
   double duration_s = 40.0;
   double gravity_mps2 = standard_gravity_mps2;
-  DriveParameters drive;
+  GearMotorParameters drive;
   /// Two opposite sensors on the wheel, with a spread of ± this on their biases.
   std::vector<RigSensor> sensors{RigSensor{}, RigSensor{.position_rad = rad_per_turn / 2}};
   double bias_spread_mps2 = 0.3;
@@ -34,13 +34,13 @@ struct DriveOptions {
 [[nodiscard]] double exploring_voltage(double t_s);
 
 /// The drive with its sensors, a sample at a time.
-class DriveRig {
+class MotorRig {
  public:
   /// Errors: invalid_argument (the message names the option).
-  [[nodiscard]] static Result<DriveRig> start(const DriveOptions& options);
-  DriveRig(DriveRig&&) noexcept;
-  DriveRig& operator=(DriveRig&&) noexcept;
-  ~DriveRig();
+  [[nodiscard]] static Result<MotorRig> start(const MotorOptions& options);
+  MotorRig(MotorRig&&) noexcept;
+  MotorRig& operator=(MotorRig&&) noexcept;
+  ~MotorRig();
 
   /// voltage (V), current (A), encoder (rad) if there is one, and acc1_x, acc1_y, acc2_x, … (m/s²).
   [[nodiscard]] const std::vector<Channel>& channels() const;
@@ -50,24 +50,24 @@ class DriveRig {
   void advance(double voltage_v);
   /// The same for a part of it.
   void advance(double voltage_v, double duration_s);
-  [[nodiscard]] const DriveState& state() const;
+  [[nodiscard]] const GearMotorState& state() const;
   /// Angle of the first sensor's x axis above the horizontal.
   [[nodiscard]] double angle_rad() const;
 
  private:
   class Parts;
-  explicit DriveRig(const DriveOptions& options);
+  explicit MotorRig(const MotorOptions& options);
   std::unique_ptr<Parts> parts_;
 };
 
-struct DriveResult {
+struct MotorResult {
   Recording recording;
   /// angle (of the first sensor's x axis above the horizontal), speed and acceleration of the load,
   /// motor_angle and motor_speed, contact (−1, 0, 1), friction (N m).
   Recording truth;
 };
 
-/// The drive under the exploring voltage. Errors: as DriveRig::start().
-[[nodiscard]] Result<DriveResult> simulate_drive(const DriveOptions& options);
+/// The drive under the exploring voltage. Errors: as MotorRig::start().
+[[nodiscard]] Result<MotorResult> simulate_motor(const MotorOptions& options);
 
 }  // namespace proofmass::simulate
