@@ -364,7 +364,7 @@ Status Run::run_here(const std::vector<std::size_t>& order) {
   if (command_.output.invocation) std::ignore = command_.output.invocation->provenance();
   return fleet::run_pool(
       order,
-      {.processes = report_.processes,
+      {.processes = std::max<std::size_t>(1, report_.processes),  // 0: the workers of Dask
        .timeout_s = command_.timeout_s.value_or(0.0),
        .memory_bytes = static_cast<std::size_t>(memory_mb_ * bytes_per_megabyte)},
       {.run = [&](std::size_t job) { return run_child(tasks_[job]); },
