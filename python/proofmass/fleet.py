@@ -70,7 +70,7 @@ def run(
     Returns
     -------
     Result
-        jobs, done, skipped, failed and results.
+        jobs, done, skipped, waiting, failed and results.
     """
     own = dict(jobs=jobs, memory=memory, timeout=timeout, force=force, reports=reports, by=by, shard=shard, dask=dask,
                program=None if program is None else os.fspath(program))  # fmt: skip

@@ -86,6 +86,12 @@ class BySensor(FleetTest):
             self.assertEqual(found[name]["verdict"], "identified")
             self.assertAlmostEqual(found[name]["value"] / other[name]["value"], 1.0, delta=1e-6)
 
+    def sums(self, folder="results"):
+        return sorted((self.folder / folder / "sums").glob("*.sums"))
+
+    def join(self, *sums):
+        return self.document("noise", *map(str, sums), "--as-one")
+
     def joined(self, *flags):
         document = self.document("fleet", "noise", "manifest.csv", "--by", "sensor", "--into", "results", *flags)
         self.assertEqual(self.counts(document), (1, 1, 0, 0))
@@ -129,6 +135,90 @@ class BySensor(FleetTest):
         self.assertIn("1 times for 2 files", self.expect_failure(USAGE, "noise", "h00.csv", "h01.csv", "--as-one", "--starts", "0"))
         self.assertIn("of noise alone", self.expect_failure(USAGE, "fleet", "inspect", "manifest.csv", "--by", "sensor", "--into", "r"))
         self.assertIn("has no batch", self.expect_failure(USAGE, "fleet", "noise", "manifest.csv", "--by", "batch", "--into", "r"))
+
+    def test_shards_that_share_one_sensor_make_the_table_that_one_process_makes(self):
+        self.day(samples=380, missing=7)
+        flags = ("noise", "manifest.csv", "--by", "sensor", "--quiet")
+        self.document("fleet", *flags, "--into", "one")
+        for i in range(4):
+            document = self.document("fleet", *flags, "--into", "four", "--shard", f"{i}/4")
+            self.assertEqual((document["done"], document["waiting"]), (0, 1) if i < 3 else (1, 0))
+        self.assertEqual(len(self.sums("four")), self.HOURS)
+        for name in ("results.parquet", "failures.ndjson"):
+            self.assertEqual((self.folder / "one" / name).read_bytes(), (self.folder / "four" / name).read_bytes(), name)
+        self.assertEqual(self.counts(self.document("fleet", *flags, "--into", "four", "--shard", "2/4")), (1, 0, 1, 0))
+
+    def test_a_shard_that_was_killed_leaves_whole_sums_and_goes_on_from_them(self):
+        self.day(samples=3000, missing=7, hours=12)
+        flags = ("noise", "manifest.csv", "--by", "sensor", "--quiet", "-j", "1")
+        self.document("fleet", *flags, "--into", "one")
+        self.document("fleet", *flags, "--into", "two", "--shard", "0/2")
+        kept = len(self.sums("two"))
+        self.assertEqual(kept, 6)
+        running = subprocess.Popen([PROGRAM, "fleet", *flags, "--into", "two", "--shard", "1/2"], cwd=self.folder, stdout=subprocess.DEVNULL)
+        while len(self.sums("two")) < kept + 2 and running.poll() is None:
+            time.sleep(0.005)
+        running.send_signal(signal.SIGKILL)
+        running.wait()
+        for sums in self.sums("two"):
+            head, rest = sums.read_bytes().split(b"\n", 1)
+            self.assertEqual(len(rest), int(head.split()[5]), sums.name)
+        self.document("fleet", *flags, "--into", "two", "--shard", "1/2")
+        self.assertEqual((self.folder / "one/results.parquet").read_bytes(), (self.folder / "two/results.parquet").read_bytes())
+
+    def test_the_order_of_the_sums_does_not_matter_and_missing_ones_are_a_gap(self):
+        self.day(samples=380, missing=7)
+        self.joined()
+        whole = self.document("noise", "day.csv")
+        sums = self.sums()
+        random.Random(3).shuffle(sums)
+        joined = self.join(*sums)
+        self.assert_same(joined, whole)
+        self.assertEqual(joined["input"], [f"h{k:02d}.csv" for k in range(self.HOURS)])
+        self.assertEqual([one["path"] for one in joined["provenance"]["inputs"]], joined["input"])
+        self.assertEqual(joined["channels"], self.join(*reversed(sums))["channels"])
+        # Hours that are not in the manifest.
+        (self.folder / "manifest.csv").write_text("".join(
+            line for line in (self.folder / "manifest.csv").read_text().splitlines(True) if not line.startswith(("h07", "h15"))))
+        shorter = self.document("fleet", "noise", "manifest.csv", "--by", "sensor", "--into", "results")
+        self.assertEqual(self.counts(shorter), (1, 1, 0, 0))
+        rows = (self.folder / "day.csv").read_text().splitlines(True)
+        self.write("gappy.csv", "".join(rows[:1] + [row for k, row in enumerate(rows[1:]) if k // 380 not in (7, 15)]))
+        (path,) = (self.folder / "results/documents").glob("S1-*.json")
+        self.assert_same(parse_json(path.read_text()), self.document("noise", "gappy.csv"))
+
+    def test_sums_that_are_not_whole_are_refused_in_one_line(self):
+        self.day(samples=400, missing=0, hours=3)
+        self.joined()
+        first, second, third = self.sums()
+        refusal = lambda *files, status=BAD_INPUT: self.expect_failure(status, "noise", *map(str, files), "--as-one")
+        text = second.read_text()
+        for length in (40, 200, len(text) // 2, len(text) - 1):
+            second.write_text(text[:length])
+            error = refusal(first, second, third)
+            self.assertIn(second.name + ": sums of noise: ", error)
+            self.assertEqual(error.strip().count("\n"), 0)
+        second.write_text(text[:-20] + ("A" if text[-20] != "A" else "B") + text[-19:])
+        self.assertIn("its checksum does not match", refusal(first, second, third))
+        second.write_text(text)
+        self.assertIn("of the recordings before it are not there", refusal(second, third))
+        self.assertIn("were made with --statistic oadev", self.expect_failure(BAD_INPUT, "noise", str(first), "--as-one", "--statistic", "mdev"))
+        cards = sorted((self.folder / "results/sums").glob("*.card"))
+        self.assertIn("it has no sums yet", refusal(cards[0]))
+        # The fleet makes what is cut off again.
+        second.write_text(text[:100])
+        flags = ("noise", "manifest.csv", "--by", "sensor", "--into", "results")
+        self.assertEqual(self.counts(self.document("fleet", *flags, "--force")), (1, 1, 0, 0))
+        self.assertEqual(second.read_text(), text)
+
+    def test_a_recording_that_cannot_be_read_fails_its_sensor_by_name(self):
+        self.day(samples=400, missing=0, hours=3)
+        self.write("h01.csv", "the disk was full\n")
+        ran = self.run_command("fleet", "noise", "manifest.csv", "--by", "sensor", "--into", "results", "--json", "-")
+        self.assertEqual(ran.returncode, BAD_INPUT)
+        document = parse_json(ran.stdout.decode())
+        self.assertEqual(self.counts(document), (1, 0, 0, 1))
+        self.assertIn("h01.csv: no row of numbers", document["failed"][0]["reason"])
 
     def test_weeks_between_recordings_take_no_time(self):
         self.day(samples=400, missing=0, hours=2)
@@ -270,6 +360,16 @@ class WholeDay(BySensor):
         hour = int(3600 * self.RATE_HZ)
         self.day(samples=hour - 50, missing=50)
         self.assert_same(self.joined(), self.document("noise", "day.csv"))
+
+    def test_files_of_an_hour_through_shards_are_the_recording_of_the_day(self):
+        hour = int(3600 * self.RATE_HZ)
+        self.day(samples=hour - 50, missing=50)
+        for i in range(4):
+            self.document("fleet", "noise", "manifest.csv", "--by", "sensor", "--into", "four", "--shard", f"{i}/4")
+        (path,) = (self.folder / "four/documents").glob("S1-*.json")
+        self.assert_same(parse_json(path.read_text()), self.document("noise", "day.csv"))
+        sizes = [sums.stat().st_size for sums in self.sums("four")]
+        print(f"sums of an hour at {self.RATE_HZ} Hz: {min(sizes)} to {max(sizes)} bytes")
 
 
 @unittest.skipUnless("PROOFMASS_FLEET_RECORDINGS" in os.environ, OF_THE_LONG_RUN)

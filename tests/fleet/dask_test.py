@@ -13,6 +13,7 @@ from contextlib import contextmanager
 
 import page
 from command import FAILED, INTERRUPTED, PROGRAM
+import fleet_test
 from fleet_test import FleetTest
 
 MISSING = [name for name in ("distributed", "proofmass") if importlib.util.find_spec(name) is None]
@@ -71,6 +72,24 @@ class Dask(FleetTest):
         self.assertEqual(running.returncode, 0, error)
         self.assertIn("58 done, 0 skipped, 2 failed", out.decode())
         self.assert_as_local()
+
+    def test_one_sensors_recordings_on_two_workers_one_of_them_killed_make_the_local_table(self):
+        fleet_test.BySensor.day(self, samples=3000, missing=7)
+        by_sensor = ("--by", "sensor")
+        self.succeed("fleet", "noise", "manifest.csv", "--into", "one", *by_sensor)
+        with self.cluster() as (address, workers):
+            running = subprocess.Popen([PROGRAM, *self.flags(address), *by_sensor], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            while len(list((self.folder / "results").glob("sums/*.card"))) < 5:
+                self.assertIsNone(running.poll())
+                time.sleep(0.02)
+            workers[0].send_signal(signal.SIGKILL)
+            out, error = running.communicate(timeout=300)
+        self.assertEqual(running.returncode, 0, error)
+        self.assertIn("1 done, 0 skipped, 0 failed", out.decode())
+        for name in ("results.parquet", "failures.ndjson"):
+            self.assertEqual((self.folder / "one" / name).read_bytes(), (self.folder / "results" / name).read_bytes(), name)
+
+    HOURS, RATE_HZ = fleet_test.BySensor.HOURS, fleet_test.BySensor.RATE_HZ
 
     def test_interrupted_it_leaves_what_is_done_and_goes_on_from_there(self):
         self.fleet(sensors=10, files=6)

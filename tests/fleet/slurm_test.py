@@ -6,6 +6,7 @@ from pathlib import Path
 import page
 import slurm
 from command import PROGRAM
+import fleet_test
 from fleet_test import FleetTest
 
 
@@ -22,6 +23,19 @@ class Slurm(FleetTest):
         self.summary("results")
         for name in ("results.parquet", "failures.ndjson"):
             self.assertEqual((self.folder / "one" / name).read_bytes(), (self.folder / "results" / name).read_bytes(), name)
+
+    def test_an_array_of_four_that_shares_one_sensor_makes_the_table_of_one_process(self):
+        fleet_test.BySensor.day(self, samples=380, missing=7)
+        self.succeed("fleet", "noise", "manifest.csv", "--by", "sensor", "--into", "one")
+        self.write("fleet.sbatch", page.script("sh", "#SBATCH --array").replace("manifest.csv", "manifest.csv --by sensor"))
+        with slurm.Cluster(self.folder / "cluster") as cluster:
+            cluster.environment["PATH"] = f"{Path(PROGRAM).parent}:{os.environ['PATH']}"
+            cluster.call("sbatch", "--wait", "fleet.sbatch", cwd=self.folder)
+        self.summary("results")
+        for name in ("results.parquet", "failures.ndjson"):
+            self.assertEqual((self.folder / "one" / name).read_bytes(), (self.folder / "results" / name).read_bytes(), name)
+
+    HOURS, RATE_HZ = fleet_test.BySensor.HOURS, fleet_test.BySensor.RATE_HZ
 
 
 if __name__ == "__main__":

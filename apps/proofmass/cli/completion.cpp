@@ -138,7 +138,8 @@ bool may_follow(const CLI::Option& option, const Options& given) {
 
 void offer_flags(const CLI::App& app, const Options& given, Answer& answer) {
   for (const CLI::Option* option : app.get_options()) {
-    if (option->get_lnames().empty() || !may_follow(*option, given)) continue;
+    const bool is_hidden = option->get_group().empty();
+    if (option->get_lnames().empty() || is_hidden || !may_follow(*option, given)) continue;
     for (const std::string& name : option->get_lnames())
       answer.offer("--" + name, option->get_description());
   }

@@ -17,6 +17,7 @@
 #include <sys/socket.h>
 #include <sys/utsname.h>
 #include <thread>
+#include <tuple>
 #include <unistd.h>
 #include <utility>
 
@@ -219,6 +220,11 @@ const report::Provenance& Invocation::provenance() {
     provenance_.inputs = std::move(sums_->found);
   }
   return provenance_;
+}
+
+void Invocation::set_inputs(std::vector<report::ProvenanceInput> inputs) {
+  std::ignore = provenance();
+  provenance_.inputs = std::move(inputs);
 }
 
 std::string program_commit() {

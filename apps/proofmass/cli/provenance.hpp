@@ -23,6 +23,9 @@ class Invocation {
   /// Waits for the checksums.
   [[nodiscard]] const report::Provenance& provenance();
 
+  /// Replaces the named files by what they were made from.
+  void set_inputs(std::vector<report::ProvenanceInput> inputs);
+
  private:
   struct Sums;
   report::Provenance provenance_;

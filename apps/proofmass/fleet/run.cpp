@@ -21,6 +21,7 @@
 #include "cli/exit_status.hpp"
 #include "cli/provenance.hpp"
 #include "cli/run_command.hpp"
+#include "fleet/runner.hpp"
 #include "fleet/shard.hpp"
 #include "input/input.hpp"
 #include "proofmass/core/version.hpp"
@@ -34,7 +35,6 @@ namespace proofmass::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 using fleet::Entry;
 using fleet::FleetReport;
 using fleet::Job;
@@ -58,63 +58,15 @@ std::string text_in(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// An object in remote storage; changes of its content are not detected.
-bool is_url(const std::string& path) {
-  return path.find("://") != std::string::npos;
-}
-
 std::vector<std::string> files_of_job(const Job& job) {
   return job.parts.empty() ? std::vector{job.path} : job.parts;
 }
 
-/// One run of a fleet.
-class Run {
- public:
-  Run(const FleetCommand& command,
-      std::vector<Job> jobs,
-      fleet::Results results,
-      fleet::Shard shard);
+}  // namespace
 
-  FleetReport finish();
-
- private:
-  [[nodiscard]] std::vector<std::string> flags_of(const Job& job) const;
-  /// Path relative to the folder of results.
-  [[nodiscard]] static std::string document_of(const Job& job) {
-    return "documents/" + fleet::document_stem(job) + ".json";
-  }
-  [[nodiscard]] std::string part_of(const Job& job) const {
-    return (fs::path(command_.into) /
-            (document_of(job) + ".part-" + std::to_string(report_.shard.i)))
-        .string();
-  }
-  [[nodiscard]] std::vector<std::string> arguments_of(const Job& job) const;
-  [[nodiscard]] bool is_done_already(const Job& job);
-  [[nodiscard]] int run_child(const Job& job) const;
-  [[nodiscard]] Entry entry_of(const Job& job, const fleet::Ended& ended) const;
-  void read_document(const Job& job, Entry& entry) const;
-  [[nodiscard]] bool ended(const fleet::Ended& ended);
-  [[nodiscard]] bool goes_on(std::size_t running);
-  void keep(const Entry& entry);
-  void show(std::size_t running);
-  std::vector<std::size_t> plan();
-  void share_memory();
-  [[nodiscard]] Status run_here(const std::vector<std::size_t>& order);
-  [[nodiscard]] Status run_by_dask(const std::vector<std::size_t>& order);
-  void write_tables();
-
-  const FleetCommand& command_;
-  std::vector<Job> jobs_;
-  std::vector<std::uintmax_t> bytes_;
-  fleet::Results results_;
-  FleetReport report_;
-  std::set<std::size_t> retried_;
-  std::uintmax_t bytes_to_do_ = 0, bytes_done_ = 0;
-  std::size_t to_do_ = 0, ended_ = 0;
-  double memory_mb_ = 0.0;
-  Clock::time_point begun_ = Clock::now();
-  Panel panel_;
-};
+bool is_url(const std::string& path) {
+  return path.find("://") != std::string::npos;
+}
 
 Run::Run(const FleetCommand& command,
          std::vector<Job> jobs,
@@ -131,15 +83,6 @@ Run::Run(const FleetCommand& command,
   report_.shard = shard;
   report_.dask = command.dask;
   share_memory();
-  for (const Job& job : jobs_) {
-    std::uintmax_t bytes = 0;
-    for (const std::string& file : files_of_job(job)) {
-      std::error_code problem;
-      const std::uintmax_t size = fs::file_size(file, problem);
-      if (!problem) bytes += size;
-    }
-    bytes_.push_back(bytes);
-  }
 }
 
 // Divides the memory among local processes; that of remote workers is limited only by --memory.
@@ -155,8 +98,12 @@ void Run::share_memory() {
                                      report::compact(all_mb, 3), sharers, least_mb));
 }
 
+std::vector<std::string> Run::verb_flags(const Job& job) const {
+  return fleet::merged_flags(command_.flags, job.flags);
+}
+
 std::vector<std::string> Run::flags_of(const Job& job) const {
-  std::vector<std::string> flags = fleet::merged_flags(command_.flags, job.flags);
+  std::vector<std::string> flags = verb_flags(job);
   if (job.parts.empty()) return flags;
   flags.emplace_back("--as-one");
   if (!job.starts_s.empty())
@@ -164,72 +111,118 @@ std::vector<std::string> Run::flags_of(const Job& job) const {
   return flags;
 }
 
-std::vector<std::string> Run::arguments_of(const Job& job) const {
-  const std::string stem = fleet::document_stem(job);
-  const fs::path folder(command_.into);
+std::string Run::part_of(const Job& job) const {
+  return (fs::path(command_.into) / (document_of(job) + ".part-" + std::to_string(report_.shard.i)))
+      .string();
+}
+
+std::vector<std::string> Run::arguments_of(const Task& task) const {
+  const Job& job = jobs_[task.job];
   std::vector<std::string> arguments{"proofmass", command_.verb};
-  const std::vector<std::string> files = files_of_job(job), flags = flags_of(job);
-  arguments.insert(arguments.end(), files.begin(), files.end());
-  arguments.insert(arguments.end(), flags.begin(), flags.end());
-  arguments.insert(arguments.end(), {"--quiet", "--json", "-"});
-  if (command_.reports) {
-    arguments.emplace_back("--report");
-    arguments.push_back((folder / "reports" / (stem + ".html")).string());
+  const auto add = [&](const std::vector<std::string>& words) {
+    arguments.insert(arguments.end(), words.begin(), words.end());
+  };
+  if (task.kind == Task::Kind::sums) {
+    arguments.push_back(job.parts[task.part]);
+    add(verb_flags(job));
+    add({"--sums", key_of(job) + "/" + task.place, "--quiet"});
+    return arguments;
   }
+  if (task.kind == Task::Kind::join) {
+    for (std::size_t part = 0; part < job.parts.size(); ++part)
+      arguments.push_back(sums_path(job, part, groups_[task.job].places[part].word()));
+    add(verb_flags(job));
+    arguments.emplace_back("--as-one");
+  } else {
+    arguments.push_back(job.path);
+    add(flags_of(job));
+  }
+  add({"--quiet", "--json", "-"});
+  if (command_.reports)
+    add({"--report",
+         (fs::path(command_.into) / "reports" / (fleet::document_stem(job) + ".html")).string()});
   // The analysis copies a table that is kept whole; a larger one is read in pieces.
   if (memory_mb_ > 0.0 && (command_.verb == "inspect" || command_.verb == "noise")) {
     constexpr double copies = 4.0;
-    arguments.emplace_back("--memory");
-    arguments.push_back(fmt::format("{:.0f}", memory_mb_ / copies));
+    add({"--memory", fmt::format("{:.0f}", memory_mb_ / copies)});
   }
   return arguments;
 }
 
-// True if inputs (including sensor files), flags and program are unchanged since the last run.
-bool Run::is_done_already(const Job& job) {
-  auto entry = results_.find(job.id());
-  if (command_.force || !entry || entry->verb != command_.verb || entry->flags != flags_of(job) ||
-      entry->parts != job.parts || entry->version != version() ||
-      entry->commit != program_commit() || (!entry->failure.empty() && !entry->is_lasting))
+std::string Run::output_of(const Task& task) const {
+  const Job& job = jobs_[task.job];
+  if (task.kind != Task::Kind::sums) return part_of(job);
+  return sums_path(job, task.part, task.place) + ".part-" + std::to_string(report_.shard.i);
+}
+
+// True if flags and program are unchanged since the result, which is there.
+bool Run::is_current(const Job& job, const Entry& entry) const {
+  if (command_.force || entry.verb != command_.verb || entry.flags != flags_of(job) ||
+      entry.parts != job.parts || entry.version != version() || entry.commit != program_commit() ||
+      (!entry.failure.empty() && !entry.is_lasting))
     return false;
   const bool has_document =
-      !entry->failure.empty() || fs::exists(fs::path(command_.into) / entry->document);
-  const bool lacks_report = command_.reports && entry->failure.empty() && entry->report.empty();
-  if (!has_document || lacks_report) return false;
-  for (const fleet::InputSum& input : entry->inputs)
-    if (!is_url(input.path) && input.sha256 != sha256_of(input.path)) return false;
-  if (entry->columns != job.columns) {
-    entry->columns = job.columns;
-    keep(*entry);
+      !entry.failure.empty() || fs::exists(fs::path(command_.into) / entry.document);
+  const bool lacks_report = command_.reports && entry.failure.empty() && entry.report.empty();
+  return has_document && !lacks_report;
+}
+
+void Run::count_skipped(const Job& job, Entry entry) {
+  if (entry.columns != job.columns) {
+    entry.columns = job.columns;
+    keep(entry);
   }
-  if (entry->failure.empty())
+  if (entry.failure.empty())
     ++report_.skipped;
   else
-    report_.failed.push_back({job.path, entry->failure});
+    report_.failed.push_back({job.path, entry.failure});
+}
+
+// True if also the inputs (including sensor files) are unchanged since the last run.
+bool Run::is_done_already(const Job& job) {
+  const auto entry = results_.find(job.id());
+  if (!entry || !is_current(job, *entry)) return false;
+  for (const fleet::InputSum& input : entry->inputs)
+    if (!is_url(input.path) && input.sha256 != sha256_of(input.path)) return false;
+  count_skipped(job, *entry);
   return true;
 }
 
-// The jobs to be run, largest first.
-std::vector<std::size_t> Run::plan() {
-  std::vector<std::size_t> order;
-  for (std::size_t k = 0; k < jobs_.size() && !interruption_waits(); ++k) {
-    if (is_done_already(jobs_[k])) continue;
-    order.push_back(k);
-    bytes_to_do_ += bytes_[k];
-  }
+std::size_t Run::add_task(Task task) {
+  std::error_code problem;
+  const Job& job = jobs_[task.job];
+  std::uintmax_t bytes = 0;
+  if (task.kind == Task::Kind::verb) bytes = fs::file_size(job.path, problem);
+  if (task.kind == Task::Kind::sums) bytes = fs::file_size(job.parts[task.part], problem);
+  bytes_.push_back(problem ? 0 : bytes);
+  bytes_to_do_ += bytes_.back();
+  ++to_do_;
+  tasks_.push_back(std::move(task));
+  return tasks_.size() - 1;
+}
+
+void Run::largest_first(std::vector<std::size_t>& order) const {
   std::ranges::stable_sort(order,
                            [&](std::size_t a, std::size_t b) { return bytes_[a] > bytes_[b]; });
-  to_do_ = order.size();
+}
+
+std::vector<std::size_t> Run::plan() {
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < jobs_.size() && !interruption_waits(); ++k)
+    if (!is_done_already(jobs_[k])) order.push_back(add_task({.job = k}));
+  largest_first(order);
   return order;
 }
 
-int Run::run_child(const Job& job) const {
-  std::vector<std::string> arguments = arguments_of(job);
+int Run::run_child(const Task& task) const {
+  std::vector<std::string> arguments = arguments_of(task);
   std::vector<char*> words;
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
   return run_command(static_cast<int>(arguments.size()), words.data());
 }
+
+namespace {
 
 // The last line of the verb's standard error, without the program's name.
 std::string last_words(const std::string& words) {
@@ -240,8 +233,9 @@ std::string last_words(const std::string& words) {
   return words.substr(from, words.find('\n', from) - from);
 }
 
-// The reason without the recording's name, which is reported beside it.
-std::string why_it_failed(const Job& job,
+}  // namespace
+
+std::string why_it_failed(const std::string& file,
                           const fleet::Ended& ended,
                           const std::optional<double>& timeout_s) {
   if (ended.timed_out)
@@ -251,7 +245,7 @@ std::string why_it_failed(const Job& job,
     return fmt::format("its process was ended by signal {} ({})", ended.signal,
                        ::strsignal(ended.signal));
   std::string words = last_words(ended.words);
-  if (words.starts_with(job.path + ": ")) words.erase(0, job.path.size() + 2);
+  if (words.starts_with(file + ": ")) words.erase(0, file.size() + 2);
   return words.empty() ? fmt::format("ended with status {}", ended.status) : words;
 }
 
@@ -286,7 +280,7 @@ Entry Run::entry_of(const Job& job, const fleet::Ended& ended) const {
   if (ended.status == done && ended.signal == 0)
     read_document(job, entry);
   else
-    entry.failure = why_it_failed(job, ended, command_.timeout_s);
+    entry.failure = why_it_failed(job.path, ended, command_.timeout_s);
   if (!entry.failure.empty()) {
     entry.is_lasting = ended.status == bad_input || ended.status == usage;
     for (const std::string& file : files_of_job(job))
@@ -308,23 +302,34 @@ void Run::keep(const Entry& entry) {
 }
 
 bool Run::ended(const fleet::Ended& ended) {
-  const Job& job = jobs_[ended.job];
   report_.busy_s += ended.seconds;
+  const bool again =
+      tasks_[ended.job].kind == Task::Kind::sums ? sums_ended(ended) : verb_ended(ended);
+  if (again) return true;
+  ++ended_;
+  bytes_done_ += bytes_[ended.job];
+  return false;
+}
+
+bool Run::verb_ended(const fleet::Ended& ended) {
+  const Job& job = jobs_[tasks_[ended.job].job];
   const Entry entry = entry_of(job, ended);
   // Crashes, timeouts and lack of memory may be due to other jobs and are retried once; a refusal
   // is final.
   if (!entry.failure.empty() && !entry.is_lasting && retried_.insert(ended.job).second) return true;
+  take_result(job, entry);
+  return false;
+}
+
+void Run::take_result(const Job& job, const Entry& entry) {
   keep(entry);
-  ++ended_;
-  bytes_done_ += bytes_[ended.job];
   if (entry.failure.empty()) {
     ++report_.done;
-  } else {
-    report_.failed.push_back({job.path, entry.failure});
-    panel_.wipe();
-    show_line("failed: " + io::clean_text(job.path + ": " + entry.failure), command_.output);
+    return;
   }
-  return false;
+  report_.failed.push_back({job.path, entry.failure});
+  panel_.wipe();
+  show_line("failed: " + io::clean_text(job.path + ": " + entry.failure), command_.output);
 }
 
 void Run::show(std::size_t running) {
@@ -359,11 +364,11 @@ Status Run::run_here(const std::vector<std::size_t>& order) {
   if (command_.output.invocation) std::ignore = command_.output.invocation->provenance();
   return fleet::run_pool(
       order,
-      {.processes = report_.processes,
+      {.processes = std::max<std::size_t>(1, report_.processes),  // 0: the workers of Dask
        .timeout_s = command_.timeout_s.value_or(0.0),
        .memory_bytes = static_cast<std::size_t>(memory_mb_ * bytes_per_megabyte)},
-      {.run = [&](std::size_t job) { return run_child(jobs_[job]); },
-       .output = [&](std::size_t job) { return part_of(jobs_[job]); },
+      {.run = [&](std::size_t job) { return run_child(tasks_[job]); },
+       .output = [&](std::size_t job) { return output_of(tasks_[job]); },
        .ended = [&](const fleet::Ended& one) { return ended(one); },
        .goes_on = [&](std::size_t running) { return goes_on(running); }});
 }
@@ -380,20 +385,24 @@ Status Run::run_by_dask(const std::vector<std::size_t>& order) {
       fleet::run_driver(order, options,
                         {.arguments =
                              [&](std::size_t job) {
-                               std::vector<std::string> words = arguments_of(jobs_[job]);
+                               std::vector<std::string> words = arguments_of(tasks_[job]);
                                words.erase(words.begin());  // the program
                                return words;
                              },
-                         .output = [&](std::size_t job) { return part_of(jobs_[job]); },
+                         .output = [&](std::size_t job) { return output_of(tasks_[job]); },
                          .ended = [&](const fleet::Ended& one) { return ended(one); },
                          .goes_on = [&](std::size_t running) { return goes_on(running); }});
   return ran ? ran : Status(ran.error().at("--dask"));
 }
 
+Status Run::run_tasks(const std::vector<std::size_t>& order) {
+  if (order.empty() || interruption_waits()) return Done{};
+  return command_.dask.empty() ? run_here(order) : run_by_dask(order);
+}
+
 FleetReport Run::finish() {
   if (command_.reports) fs::create_directories(fs::path(command_.into) / "reports");
-  const std::vector<std::size_t> order = plan();
-  const Status ran = command_.dask.empty() ? run_here(order) : run_by_dask(order);
+  const Status ran = command_.by.empty() ? run_tasks(plan()) : run_groups();
   panel_.wipe();
   write_tables();
   if (!ran) throw Failure(failed, ran.error().message);
@@ -405,6 +414,8 @@ FleetReport Run::finish() {
               command_.output);
   return report_;
 }
+
+namespace {
 
 // Parses one recording's command line completely, so that a usage error ends the fleet before it
 // begins.
@@ -438,7 +449,7 @@ FleetReport run_fleet(const FleetCommand& command) {
   for (const Job& job : jobs)
     if (seen.insert(job.flags).second)
       check_flags(command, fleet::merged_flags(command.flags, job.flags));
-  if (shard.n > 1) jobs = fleet::shard_of(jobs, shard.i, shard.n);
+  if (shard.n > 1 && command.by.empty()) jobs = fleet::shard_of(jobs, shard.i, shard.n);
   fleet::Results results = need(fleet::Results::open(command.into, shard), Stage::writing);
   FleetReport report;
   without_interruption(

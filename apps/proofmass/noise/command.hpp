@@ -16,6 +16,7 @@ struct NoiseCommand {
   std::optional<double> stop_ratio;
   bool exclude_events = false;
   bool as_one = false;           ///< the files are parts of one recording
+  std::string sums;              ///< --sums: print the sums of one file; empty: analyse
   std::vector<double> starts_s;  ///< --starts: of the parts; empty: from their own clocks
   InputFlags input;
   OutputFlags output;

@@ -8,7 +8,9 @@
 
 #include "cli/exit_status.hpp"
 #include "input/rest_channels.hpp"
+#include "noise/sums.hpp"
 #include "proofmass/characterise/noise_stream.hpp"
+#include "proofmass/fleet/noise_sums.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/signal/recording_sequence.hpp"
 
@@ -55,19 +57,14 @@ class Parts {
     if (k == 0) first_clock_s_ = own_s;
     if (command_.starts_s.empty() && !own_s)
       refuse_part(file, "it has no clock from which its start is known: give --starts S,S…");
-    part.start_s = command_.starts_s.empty() ? *own_s : start_near(command_.starts_s[k], own_s);
+    part.start_s = command_.starts_s.empty()
+                       ? *own_s
+                       : fleet::start_near(command_.starts_s[k], command_.starts_s.front(), own_s,
+                                           first_clock_s_);
     return part;
   }
 
  private:
-  // Given starts may be rounded to seconds; a clock that agrees with them is more precise.
-  [[nodiscard]] double start_near(double given_s, const std::optional<double>& own_s) const {
-    constexpr double coarse_s = 1.0;
-    if (!own_s || !first_clock_s_) return given_s;
-    const double by_clock_s = command_.starts_s.front() + *own_s - *first_clock_s_;
-    return std::abs(by_clock_s - given_s) <= coarse_s ? by_clock_s : given_s;
-  }
-
   const NoiseCommand& command_;
   RestOptions options_;
   std::vector<Note>& notes_;
@@ -119,17 +116,6 @@ const RestChannel& same_channel(const Part& part, const RestChannel& first) {
   return *found;
 }
 
-void add_gap(NoiseStream& stream, std::size_t missing) {
-  constexpr std::size_t most_at_once = 8192;
-  const std::vector<double> gap(std::min(missing, most_at_once),
-                                std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t left = missing; left > 0;) {
-    const std::size_t now = std::min(left, gap.size());
-    stream.add(View<double>(gap).first(now));
-    left -= now;
-  }
-}
-
 void add_part(Joined& joined, const RestChannel& part, std::size_t missing) {
   RestChannel& whole = joined.channel.rest;
   if (whole.refused.empty() && !part.refused.empty())
@@ -167,12 +153,21 @@ class MeanRate {
 
 }  // namespace
 
+void add_gap(NoiseStream& stream, std::size_t missing) {
+  constexpr std::size_t most_at_once = 8192;
+  const std::vector<double> gap(std::min(missing, most_at_once),
+                                std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t left = missing; left > 0;) {
+    const std::size_t now = std::min(left, gap.size());
+    stream.add(View<double>(gap).first(now));
+    left -= now;
+  }
+}
+
 std::vector<NoiseChannel> analyse_joined(const NoiseCommand& command,
                                          const NoiseOptions& noise,
                                          std::vector<Note>& notes) {
-  if (!command.temperature.empty() || !command.update_sensor.empty() || command.input.from_s ||
-      command.input.to_s)
-    throw Failure(usage, "--as-one: without --temperature, --update-sensor, --from and --to");
+  check_joined_flags(command);
   Parts parts(command, notes);
   const std::size_t count = command.files.size();
   Part part = parts.read(0);

@@ -14,6 +14,7 @@
 #include "noise/joined.hpp"
 #include "noise/options.hpp"
 #include "noise/streaming.hpp"
+#include "noise/sums.hpp"
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/core/in_parallel.hpp"
 #include "proofmass/report/noise/report.hpp"
@@ -59,6 +60,9 @@ void add_noise_flags(CLI::App& verb, NoiseCommand& command) {
       ->delimiter(',')
       ->check(finite())
       ->needs(as_one);
+  // Of the fleet: its processes make the sums, and join them.
+  add("--sums", command.sums, "KEY/PLACE", "print the sums of one file, to be joined by --as-one")
+      ->group("");
   add("--temperature", command.temperature, "NAME",
       "remove the linear dependence on this channel, by least squares");
   add("--update-sensor", command.update_sensor, "FILE.toml",
@@ -268,12 +272,14 @@ NoiseOptions noise_options(const NoiseCommand& command) {
 
 void run_noise(const NoiseCommand& command) {
   const NoiseOptions options = noise_options(command);
+  if (!command.sums.empty()) return print_sums(command, options);
   report::NoiseReport report;
   report.inputs = command.files;
   report.events_excluded = command.exclude_events;
-  std::vector<NoiseChannel> channels = command.as_one
-                                           ? analyse_joined(command, options, report.notes)
-                                           : noise_channels(command, options, report.notes);
+  std::vector<NoiseChannel> channels =
+      !command.as_one       ? noise_channels(command, options, report.notes)
+      : holds_sums(command) ? join_sums(command, options, report.inputs, report.notes)
+                            : analyse_joined(command, options, report.notes);
   in_parallel(channels.size(), progress_bar(command.output), [&](std::size_t k, Progress progress) {
     NoiseOptions own = options;
     own.progress = std::move(progress);

@@ -1,6 +1,7 @@
 #include "proofmass/characterise/noise_accumulator.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "proofmass/characterise/allan/averaging_times.hpp"
 #include "proofmass/characterise/noise_fit.hpp"
@@ -8,8 +9,6 @@
 namespace proofmass::characterise {
 namespace {
 
-// Up to this length every term is used; beyond, sixteen or more per τ.
-constexpr std::size_t decimate_above = std::size_t{1} << 20;
 // Assumed length of a recording of unknown length: three thousand years at a kilohertz.
 constexpr std::size_t any_length = std::size_t{1} << 46;
 // Minimum number of segments in an averaged spectrum, as long as these have 64 samples.
@@ -56,6 +55,34 @@ NoiseAccumulator::NoiseAccumulator(const NoiseOptions& options, std::size_t expe
                  .segment = segment_for(expected_samples > 0 ? expected_samples : any_length,
                                         options.segment)}),
       slow_(options.rate_hz) {}
+
+NoiseAccumulator::NoiseAccumulator(const NoiseOptions& options, const PartPlace& place)
+    : options_(options),
+      least_overlap_(least_decimated_overlap),
+      factors_(factors_for(options, any_length)),
+      differences_(
+          options.statistic,
+          factors_,
+          least_overlap_,
+          static_cast<std::ptrdiff_t>(place.first) - static_cast<std::ptrdiff_t>(place.origin)),
+      spectrum_({.rate_hz = options.rate_hz, .segment = options.segment}, place.first),
+      slow_(options.rate_hz, place.first, place.total) {}
+
+void NoiseAccumulator::append(NoiseAccumulator part) {
+  samples_ += part.samples_;
+  differences_.append(std::move(part.differences_));
+  spectrum_.append(part.spectrum_);
+  slow_.append(part.slow_);
+}
+
+void NoiseAccumulator::exchange(StateBytes& bytes) {
+  bytes(samples_);
+  constexpr std::size_t most_samples = std::size_t{1} << 48;
+  if (samples_ > most_samples) return bytes.fail();
+  differences_.exchange(bytes, samples_);
+  if (!bytes.failed()) spectrum_.exchange(bytes, samples_);
+  if (!bytes.failed()) slow_.exchange(bytes, samples_);
+}
 
 void NoiseAccumulator::add(View<double> samples) {
   for (std::size_t from = 0; from < samples.size(); from += chunk) {

@@ -10,8 +10,19 @@
 
 namespace proofmass::characterise {
 
+/// Up to so many samples every term of a deviation is used; beyond, sixteen or more per τ.
+inline constexpr std::size_t decimate_above = std::size_t{1} << 20;
+
 /// Terms per τ after decimation of long recordings.
 inline constexpr std::size_t least_decimated_overlap = 16;
+
+/// Where a part of a series lies in the whole.
+struct PartPlace {
+  std::size_t first = 0;   ///< samples before it
+  std::size_t origin = 0;  ///< samples before the first valid one of the whole
+  std::size_t total =
+      0;  ///< samples of the whole, of which only the number of binary digits counts
+};
 
 /// Online noise analysis for recordings longer than memory: deviation, spectrum, lines and
 /// coefficients in one pass. analyse_noise is a fold over it, after event detection.
@@ -27,8 +38,20 @@ class NoiseAccumulator {
   /// progress are not used. noise_type lag1 is treated as model.
   explicit NoiseAccumulator(const NoiseOptions& options, std::size_t expected_samples = 0);
 
+  /// A part of a longer series, which append() joins to others. The overlap is that of a long
+  /// record, and its segments have the length that the options state.
+  NoiseAccumulator(const NoiseOptions& options, const PartPlace& place);
+
   /// NaN is missing.
   void add(View<double> samples);
+
+  /// Adds the part that follows.
+  void append(NoiseAccumulator part);
+
+  /// Fails where the state read is not that of such a part.
+  void exchange(StateBytes& bytes);
+
+  [[nodiscard]] std::size_t samples() const { return samples_; }
 
   /// Sets the final rate, within a few per cent of that in the options: it scales frequencies,
   /// densities and times.

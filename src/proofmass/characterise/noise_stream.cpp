@@ -71,6 +71,32 @@ Result<NoiseStream> NoiseStream::start(const NoiseOptions& options, std::size_t 
   return NoiseStream(options, expected_samples);
 }
 
+NoiseStream::NoiseStream(const NoiseOptions& options, const PartPlace& place)
+    : options_(options),
+      accumulator_(options, place),
+      overview_(place.first),
+      stationarity_(place.first, place.total) {}
+
+Result<NoiseStream> NoiseStream::start_part(const NoiseOptions& options, const PartPlace& place) {
+  if (Status possible = check_stream(options, place.total); !possible) return possible.error();
+  return NoiseStream(options, place);
+}
+
+void NoiseStream::append(NoiseStream part) {
+  overview_.append(part.overview_);
+  accumulator_.append(std::move(part.accumulator_));
+  stationarity_.append(part.stationarity_);
+}
+
+void NoiseStream::exchange(StateBytes& bytes) {
+  accumulator_.exchange(bytes);
+  if (!bytes.failed()) overview_.exchange(bytes);
+  if (!bytes.failed()) stationarity_.exchange(bytes);
+  if (overview_.samples() != accumulator_.samples() ||
+      stationarity_.samples() != accumulator_.samples())
+    bytes.fail();
+}
+
 void NoiseStream::add(View<double> samples) {
   overview_.add(samples);
   accumulator_.add(samples);

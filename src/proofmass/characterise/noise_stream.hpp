@@ -34,6 +34,23 @@ class NoiseStream {
   [[nodiscard]] static Result<NoiseStream> start(const NoiseOptions& options,
                                                  std::size_t expected_samples = 0);
 
+  /// A part of a longer series: samples before and after it are in other streams, which append()
+  /// joins in the order of time, in any grouping. The first part is at place.first = 0; what all
+  /// parts together say is what start() says of the whole series, if that is longer than
+  /// decimate_above. Errors: as above.
+  [[nodiscard]] static Result<NoiseStream> start_part(const NoiseOptions& options,
+                                                      const PartPlace& place);
+
+  /// Adds the part that follows: its place begins where this one ends.
+  void append(NoiseStream part);
+
+  /// The sums of a part; an hour at 1 kHz has less than a megabyte, of which the first part of a
+  /// series has two. Fails where the state read is not that of a part at this place.
+  void exchange(StateBytes& bytes);
+
+  /// Samples so far, with missing ones.
+  [[nodiscard]] std::size_t samples() const { return overview_.samples(); }
+
   /// Adds the next samples, on an even grid; NaN is missing.
   void add(View<double> samples);
 
@@ -42,6 +59,7 @@ class NoiseStream {
 
  private:
   NoiseStream(const NoiseOptions& options, std::size_t expected_samples);
+  NoiseStream(const NoiseOptions& options, const PartPlace& place);
 
   NoiseOptions options_;
   NoiseAccumulator accumulator_;

@@ -156,7 +156,7 @@ TEST(RecordOverview, TakesTheEndsOfALongQuantisedNoiseForNoRails) {
   }
   EXPECT_TRUE(overview.check_rails(1.0));
   // A sensor whose values stay within one and a half standard deviations.
-  overview = {};
+  overview = RecordOverview();
   for (int piece = 0; piece < 200; ++piece) {
     for (double& x : y) x = std::min(std::round(normal(rng)), 6.0);
     overview.add(y);

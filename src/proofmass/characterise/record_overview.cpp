@@ -5,13 +5,15 @@
 #include <fmt/format.h>
 #include <iterator>
 
+#include "proofmass/core/contract.hpp"
 #include "proofmass/core/number_words.hpp"
 #include "proofmass/signal/audit/chunk_statistics.hpp"
 
 namespace proofmass::characterise {
 namespace {
 
-constexpr std::size_t block = 64;
+// Of a part, as its state is written; an hour's samples are as many as a day's single ones.
+constexpr std::size_t most_of_sample = signal::Subsample::usual_capacity / 16;
 
 }  // namespace
 
@@ -28,9 +30,57 @@ void RecordOverview::add(View<double> samples) {
   }
 }
 
+void RecordOverview::append(const RecordOverview& part) {
+  PM_EXPECTS(part.before_ == (before_ + samples_) % block);
+  const std::size_t of_head = part.head_.size();
+  add_sums(part.head_);
+  missing_ += part.missing_;
+  add_extremes(part);
+  if (part.samples_ == of_head) return;
+  samples_ += part.samples_ - of_head;
+  total_ += part.total_;
+  squares_ += part.squares_;
+  freedom_ += part.freedom_;
+  block_ = part.block_;
+}
+
+void RecordOverview::add_extremes(const RecordOverview& part) {
+  const auto take = [](Extreme& extreme, const Extreme& other, bool is_beyond) {
+    if (is_beyond)
+      extreme = other;
+    else if (other.value == extreme.value)
+      extreme.count += other.count;
+  };
+  take(low_, part.low_, part.low_.value < low_.value);
+  take(high_, part.high_, part.high_.value > high_.value);
+  sample_.append(part.sample_);
+  lowest_.append(part.lowest_);
+  highest_.append(part.highest_);
+}
+
+void RecordOverview::exchange(StateBytes& bytes) {
+  for (std::size_t* count : {&samples_, &missing_, &low_.count, &high_.count}) bytes(*count);
+  for (double* value : {&total_, &squares_, &freedom_, &block_.first, &block_.sum, &block_.squares,
+                        &block_.count, &low_.value, &high_.value})
+    bytes(*value);
+  bytes(head_);
+  sample_.exchange(bytes, most_of_sample);
+  lowest_.exchange(bytes);
+  highest_.exchange(bytes);
+  const std::size_t wanted = before_ == 0 ? 0 : block - before_;
+  if (head_.size() != std::min(wanted, samples_) || missing_ > samples_) bytes.fail();
+}
+
 void RecordOverview::add_sums(View<double> samples) {
   while (!samples.empty()) {
-    const std::size_t count = std::min(samples.size(), block - samples_ % block);
+    const std::size_t count = std::min(samples.size(), block - (before_ + samples_) % block);
+    if (before_ + samples_ < block && before_ > 0) {
+      head_.insert(head_.end(), samples.begin(),
+                   samples.begin() + static_cast<std::ptrdiff_t>(count));
+      samples_ += count;
+      samples = samples.subspan(count);
+      continue;
+    }
     // A copy, which stays in registers.
     Sums sums = block_;
     for (const double sample : samples.first(count)) {
@@ -45,7 +95,7 @@ void RecordOverview::add_sums(View<double> samples) {
     block_ = sums;
     samples_ += count;
     samples = samples.subspan(count);
-    if (samples_ % block == 0) close_block();
+    if ((before_ + samples_) % block == 0) close_block();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "proofmass/core/result.hpp"
+#include "proofmass/core/state_bytes.hpp"
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/audit/subsample.hpp"
 #include "proofmass/signal/clipping_tail.hpp"
@@ -16,7 +17,16 @@ namespace proofmass::characterise {
 /// infinities are missing.
 class RecordOverview {
  public:
+  /// first: number of samples of the whole series before this part.
+  explicit RecordOverview(std::size_t first = 0) : before_(first % block) {}
+
   void add(View<double> samples);
+
+  /// Adds the part that follows.
+  void append(const RecordOverview& part);
+
+  /// Fails where the state read is not that of such a part.
+  void exchange(StateBytes& bytes);
 
   [[nodiscard]] std::size_t samples() const { return samples_; }
   [[nodiscard]] std::size_t missing() const { return missing_; }
@@ -31,6 +41,8 @@ class RecordOverview {
   [[nodiscard]] Status check_rails(std::optional<double> lsb) const;
 
  private:
+  static constexpr std::size_t block = 64;
+
   struct Sums {
     double first = 0.0, sum = 0.0, squares = 0.0, count = 0.0;
   };
@@ -41,11 +53,14 @@ class RecordOverview {
 
   void add_sums(View<double> samples);
   void close_block();
+  void add_extremes(const RecordOverview& part);
   void look_at_extremes(View<double> finite);
 
+  std::size_t before_;  ///< samples of the first block that are before this part
   std::size_t samples_ = 0, missing_ = 0;
   double total_ = 0.0, squares_ = 0.0, freedom_ = 0.0;
-  Sums block_;  ///< current block
+  std::vector<double> head_;  ///< of the first block, if it begins before this part
+  Sums block_;                ///< current block
   Extreme low_{.value = std::numeric_limits<double>::infinity()};
   Extreme high_{.value = -std::numeric_limits<double>::infinity()};
   signal::Subsample sample_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <complex>
 #include <cstddef>
@@ -10,6 +11,7 @@
 
 #include "proofmass/characterise/noise_model.hpp"
 #include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/contract.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/signal/whiteness.hpp"
 
@@ -54,6 +56,7 @@ double excess_correlation(const std::vector<double>& differences) {
 // Spans long enough to be independent: noise far slower than the differences, after a filter of
 // several poles, is correlated between short spans.
 std::vector<double> independent_means(EqualSpans spans, double excess_correlation) {
+  spans.grow();
   constexpr double lengths_of_correlation = 8.0, uncorrelated = 0.0;
   const double shortest = lengths_of_correlation * excess_correlation;
   while (static_cast<double>(spans.length()) < shortest && spans.count() > 1) spans.halve();
@@ -63,6 +66,31 @@ std::vector<double> independent_means(EqualSpans spans, double excess_correlatio
     means = spans.means();
   }
   return means;
+}
+
+// Of a part: short enough for any total that has as many digits in binary as this one, as those of
+// the whole series would have grown to.
+std::size_t length_of_spans(std::size_t total, std::size_t octave) {
+  constexpr std::size_t log2_most = 9;
+  const auto digits = static_cast<std::size_t>(std::bit_width(total));
+  return digits > octave + 1 + log2_most ? std::size_t{1} << (digits - octave - 1 - log2_most) : 1;
+}
+
+Moments sum_of(const Moments& a, const Moments& b) {
+  if (a.count == 0 || b.count == 0) {
+    Moments only = a.count == 0 ? b : a;
+    only.nonfinite = a.nonfinite + b.nonfinite;
+    return only;
+  }
+  // Source: T. F. Chan, G. H. Golub, R. J. LeVeque, American Statistician 37 (1983) 242.
+  const auto of_a = static_cast<double>(a.count), of_b = static_cast<double>(b.count);
+  const double apart = b.mean - a.mean, all = of_a + of_b;
+  return {.count = a.count + b.count,
+          .nonfinite = a.nonfinite + b.nonfinite,
+          .mean = a.mean + apart * (of_b / all),
+          .squares = a.squares + b.squares + apart * apart * (of_a * of_b / all),
+          .min = std::min(a.min, b.min),
+          .max = std::max(a.max, b.max)};
 }
 
 using Band = StationarityTest::Band;
@@ -156,9 +184,43 @@ Stationarity judged(const std::vector<Band>& bands) {
 
 }  // namespace
 
+EqualSpans::EqualSpans(std::size_t first, std::size_t length)
+    : length_(length), taken_(first % length), is_fixed_(true) {
+  if (taken_ == 0) return;
+  sums_.push_back(0.0);
+  counts_.push_back(0.0);
+}
+
+void EqualSpans::append(const EqualSpans& part) {
+  PM_EXPECTS(is_fixed_ && part.is_fixed_ && part.length_ == length_);
+  std::size_t from = 0;
+  if (taken_ > 0) {
+    sums_.back() += part.sums_.front();
+    counts_.back() += part.counts_.front();
+    from = 1;
+  }
+  for (std::size_t k = from; k < part.sums_.size(); ++k) {
+    sums_.push_back(part.sums_[k]);
+    counts_.push_back(part.counts_[k]);
+  }
+  taken_ = part.taken_;
+}
+
+void EqualSpans::grow() {
+  while (is_fixed_ && sums_.size() > most) halve();
+}
+
+void EqualSpans::exchange(StateBytes& bytes, std::size_t first, std::size_t values) {
+  bytes(sums_);
+  bytes(counts_);
+  const std::size_t end = first % length_ + values;
+  taken_ = end % length_;
+  if (sums_.size() != (end + length_ - 1) / length_ || counts_.size() != sums_.size()) bytes.fail();
+}
+
 void EqualSpans::add(double value) {
   if (taken_ == 0) {
-    if (sums_.size() == most) halve();
+    if (sums_.size() == most && !is_fixed_) halve();
     sums_.push_back(0.0);
     counts_.push_back(0.0);
   }
@@ -197,6 +259,10 @@ std::vector<double> EqualSpans::means() const {
 
 // The mean of the pair, if this value completes one.
 std::optional<double> StationarityTest::Octave::add(double value) {
+  if (wants_head && !head) {
+    head = value;
+    return std::nullopt;
+  }
   if (!first_of_pair) {
     first_of_pair = value;
     return std::nullopt;
@@ -206,16 +272,96 @@ std::optional<double> StationarityTest::Octave::add(double value) {
   ++coefficients;
   roots.add(std::sqrt(std::abs(difference)));
   squares.add(square(difference));
-  constexpr std::size_t enough_for_correlation = 8192;
-  if (beginning.size() < enough_for_correlation) beginning.push_back(difference);
+  if (beginning.size() < room) beginning.push_back(difference);
   return mean;
 }
 
+void StationarityTest::Octave::append(const Octave& part) {
+  if (part.coefficients > 0) {
+    PM_EXPECTS(!first_of_pair);
+    coefficients += part.coefficients;
+    roots.append(part.roots);
+    squares = sum_of(squares, part.squares);
+    for (const double difference : part.beginning)
+      if (beginning.size() < room) beginning.push_back(difference);
+  }
+  if (part.first_of_pair) first_of_pair = part.first_of_pair;
+}
+
+void StationarityTest::Octave::exchange(StateBytes& bytes,
+                                        std::size_t first_pair,
+                                        std::size_t means) {
+  bytes(first_of_pair);
+  bytes(head);
+  coefficients = (means - (wants_head ? 1 : 0)) / 2;
+  roots.exchange(bytes, first_pair, coefficients);
+  for (std::size_t* count : {&squares.count, &squares.nonfinite}) bytes(*count);
+  for (double* value : {&squares.mean, &squares.squares, &squares.min, &squares.max}) bytes(*value);
+  bytes(beginning);
+  const bool is_odd = (means - (wants_head ? 1 : 0)) % 2 == 1;
+  if (head.has_value() != wants_head || first_of_pair.has_value() != is_odd ||
+      squares.count + squares.nonfinite != coefficients ||
+      beginning.size() != std::min(room, coefficients))
+    bytes.fail();
+}
+
+StationarityTest::StationarityTest(std::size_t first, std::size_t total)
+    : first_(first), total_(total) {}
+
+// The next octave, where this part begins in it: an octave's means are over 2^k samples.
+StationarityTest::Octave StationarityTest::new_octave() const {
+  constexpr std::size_t enough_for_correlation = 8192;
+  Octave octave;
+  octave.room = enough_for_correlation;
+  if (total_ == 0) return octave;
+  const std::size_t k = octaves_.size(), samples = std::size_t{1} << k;
+  const std::size_t first_mean = (first_ + samples - 1) / samples;
+  octave.wants_head = first_mean % 2 == 1;
+  const std::size_t first_pair = (first_mean + 1) / 2;
+  octave.room -= std::min(octave.room, first_pair);
+  octave.roots = EqualSpans(first_pair, length_of_spans(total_, k));
+  return octave;
+}
+
+void StationarityTest::append(const StationarityTest& part) {
+  PM_EXPECTS(total_ > 0 && part.total_ == total_ && part.first_ == first_ + samples_);
+  samples_ += part.samples_;
+  std::optional<double> mean;
+  for (std::size_t k = 0; mean || k < part.octaves_.size(); ++k) {
+    if (k == octaves_.size()) octaves_.push_back(new_octave());
+    std::optional<double> next;
+    // The mean that spans the border, and the one behind it that waits for its partner.
+    if (mean) next = octaves_[k].add(*mean);
+    if (k < part.octaves_.size()) {
+      const Octave& other = part.octaves_[k];
+      if (other.head)
+        if (const auto made = octaves_[k].add(*other.head)) next = made;
+      octaves_[k].append(other);
+    }
+    mean = next;
+  }
+}
+
+void StationarityTest::exchange(StateBytes& bytes) {
+  bytes(samples_);
+  constexpr std::size_t most_samples = std::size_t{1} << 48;
+  if (samples_ > most_samples || first_ > most_samples) return bytes.fail();
+  for (std::size_t k = 0; !bytes.failed(); ++k) {
+    const std::size_t samples = std::size_t{1} << k;
+    const std::size_t first_mean = (first_ + samples - 1) / samples;
+    const std::size_t end = (first_ + samples_) / samples;
+    if (end <= first_mean) break;
+    if (k == octaves_.size()) octaves_.push_back(new_octave());
+    octaves_[k].exchange(bytes, (first_mean + 1) / 2, end - first_mean);
+  }
+}
+
 void StationarityTest::add(View<double> samples) {
+  samples_ += samples.size();
   for (const double sample : samples) {
     std::optional<double> mean = sample;
     for (std::size_t k = 0; mean; ++k) {
-      if (k == octaves_.size()) octaves_.emplace_back();
+      if (k == octaves_.size()) octaves_.push_back(new_octave());
       mean = octaves_[k].add(*mean);
     }
   }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "proofmass/core/state_bytes.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/spectral_lines.hpp"
@@ -29,7 +30,18 @@ inline constexpr double relevant_change = 0.01;
 /// doubles when there are more. NaN is missing.
 class EqualSpans {
  public:
+  EqualSpans() = default;
+  /// A part of a series, with `first` values before it, in spans of fixed length: those of the
+  /// whole, the first and the last of which append() completes.
+  EqualSpans(std::size_t first, std::size_t length);
+
   void add(double value);
+  /// Adds the part that follows.
+  void append(const EqualSpans& part);
+  /// The spans of a whole series, which were of fixed length, as if they had grown with it.
+  void grow();
+  /// Fails where the state read is not that of so many values, with `first` before them.
+  void exchange(StateBytes& bytes, std::size_t first, std::size_t values);
   /// Merges neighbouring spans.
   void halve();
   /// Means of the complete spans; NaN for one without values.
@@ -43,6 +55,7 @@ class EqualSpans {
   std::vector<double> sums_, counts_;
   std::size_t length_ = 1;
   std::size_t taken_ = 0;  ///< values in the last span; 0: it is complete
+  bool is_fixed_ = false;
 };
 
 /// Online test of the variance for changes over time, at every octave of averaging times.
@@ -71,7 +84,19 @@ class StationarityTest {
     std::vector<double> spans;
   };
 
+  StationarityTest() = default;
+  /// A part of a series of `total` samples, with `first` before it.
+  StationarityTest(std::size_t first, std::size_t total);
+
   void add(View<double> samples);
+
+  /// Adds the part that follows.
+  void append(const StationarityTest& part);
+
+  /// Fails where the state read is not that of such a part.
+  void exchange(StateBytes& bytes);
+
+  [[nodiscard]] std::size_t samples() const { return samples_; }
 
   [[nodiscard]] std::vector<Band> bands(double rate_hz,
                                         const std::vector<signal::SpectralLine>& lines) const;
@@ -88,10 +113,21 @@ class StationarityTest {
     Moments squares;
     std::vector<double> beginning;  ///< of the differences, for their correlation
 
+    bool wants_head = false;  ///< the partner of the first mean is before this part
+    std::optional<double> head;
+    std::size_t room = 0;  ///< of `beginning`
+
     [[nodiscard]] std::optional<double> add(double value);
+    void append(const Octave& part);
+    /// means: of the octave in this part.
+    void exchange(StateBytes& bytes, std::size_t first_pair, std::size_t means);
   };
 
+  [[nodiscard]] Octave new_octave() const;
+
   std::vector<Octave> octaves_;
+  std::size_t samples_ = 0;
+  std::size_t first_ = 0, total_ = 0;  ///< total_ = 0: not a part
 };
 
 /// StationarityTest of a whole series, plus the amplitude of every line: of the roots of the

@@ -19,6 +19,9 @@ std::string run_conclusion(const FleetReport& report) {
                                  report::count_words(report.jobs, "recording"), report.manifest,
                                  report.done, report.skipped, report.failed.size(),
                                  report::duration_words(report.elapsed_s), processes_of(report));
+  if (report.waiting > 0)
+    text += fmt::format(" {} {} for the sums of other shards: run those, or this one after them.",
+                        report.waiting, report.waiting == 1 ? "waits" : "wait");
   if (report.shard.n > 1)
     text += fmt::format(" Shard {} of {}, counted from 0.", report.shard.i, report.shard.n);
   return text;
@@ -33,6 +36,8 @@ Fields run_fields(const FleetReport& report) {
       field::count("done", report.done),
       field::count("skipped", report.skipped,
                    {.meaning = "done before with the same bytes, flags and version"}),
+      field::count("waiting", report.waiting,
+                   {.meaning = "with --by: those whose sums other shards have still to make"}),
       field::records("failed", report.failed,
                      [](const FailedJob& job) {
                        return Fields{field::text("file", job.file),

@@ -20,6 +20,7 @@ struct FleetReport {
   std::size_t jobs = 0;                    ///< done + skipped + failed, unless interrupted
   std::size_t done = 0;
   std::size_t skipped = 0;  ///< done before, with the same bytes, flags and version
+  std::size_t waiting = 0;  ///< groups whose sums other shards have still to make
   std::vector<FailedJob> failed;
   Shard shard;
   std::string dask;           ///< address of the scheduler; empty: processes of this machine

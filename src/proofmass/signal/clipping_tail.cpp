@@ -28,11 +28,26 @@ void ClippingTail::add(View<double> values, double extreme) {
 void ClippingTail::keep(double value) {
   if (!(value < below_)) return;
   kept_.push_back(value);
-  if (kept_.size() < 2 * capacity_) return;
+  if (kept_.size() >= 2 * capacity_) trim();
+}
+
+void ClippingTail::trim() {
   const auto last = kept_.begin() + static_cast<std::ptrdiff_t>(capacity_ - 1);
   std::ranges::nth_element(kept_, last);
   below_ = *last;
   kept_.resize(capacity_);
+}
+
+void ClippingTail::append(const ClippingTail& part) {
+  below_ = std::min(below_, part.below_);
+  for (const double value : part.kept_) keep(value);
+}
+
+void ClippingTail::exchange(StateBytes& bytes) {
+  if (kept_.size() > capacity_) trim();
+  bytes(kept_);
+  bytes(below_);
+  if (kept_.size() > capacity_ || std::isnan(below_)) bytes.fail();
 }
 
 double ClippingTail::beside(double width, const Subsample& sample) const {

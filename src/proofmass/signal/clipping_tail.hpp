@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "proofmass/core/state_bytes.hpp"
 #include "proofmass/core/view.hpp"
 #include "proofmass/signal/audit/subsample.hpp"
 
@@ -22,6 +23,11 @@ class ClippingTail {
   /// Adds finite values; `extreme` is the most extreme of them on this side.
   void add(View<double> values, double extreme);
 
+  /// Adds the tail of another part of the series.
+  void append(const ClippingTail& part);
+
+  void exchange(StateBytes& bytes);
+
   /// For a series that is entirely in `sample` or in this tail: number of values within `width` of
   /// the extreme, excluding the extreme itself. Beyond the tail's capacity: estimated from the
   /// sample.
@@ -29,6 +35,7 @@ class ClippingTail {
 
  private:
   void keep(double value);
+  void trim();
 
   double sign_;
   std::size_t capacity_;

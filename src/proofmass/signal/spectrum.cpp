@@ -39,8 +39,9 @@ double equivalent_degrees_of_freedom(std::size_t segments) {
 }  // namespace
 
 struct SpectrumAccumulator::State {
-  explicit State(SpectrumOptions chosen)
+  State(SpectrumOptions chosen, std::size_t first)
       : options(chosen),
+        head_wanted(first == 0 ? 0 : (half() - first % half()) % half() + half()),
         fourier(chosen.segment),
         window(hann_window(chosen.segment)),
         work(chosen.segment),
@@ -62,6 +63,32 @@ struct SpectrumAccumulator::State {
     for (std::size_t n = 0; n < options.segment; ++n)
       if (std::isfinite(samples[n])) power += window[n] * window[n];
     return power;
+  }
+
+  /// Transforms what is complete, so that less than a segment stays in the buffer.
+  void flush() {
+    const std::size_t segments = complete();
+    if (segments == 0) return;
+    transform_segments();
+    full_batch_seen = true;
+    buffer.erase(buffer.begin(), buffer.begin() + static_cast<long>(segments * half()));
+  }
+
+  /// Takes samples into the head; returns the rest.
+  [[nodiscard]] View<double> fill_head(View<double> samples) {
+    const std::size_t count = std::min(samples.size(), head_wanted - head.size());
+    if (count == 0) return samples;
+    head.insert(head.end(), samples.begin(), samples.begin() + static_cast<long>(count));
+    if (head.size() == head_wanted)
+      buffer.assign(head.end() - static_cast<long>(half()), head.end());
+    return samples.subspan(count);
+  }
+
+  /// Σ |X|² of all segments so far.
+  [[nodiscard]] std::vector<double> power() const {
+    std::vector<double> all = fourier.real_power(sums);
+    for (std::size_t k = 0; k < appended.size(); ++k) all[k] += appended[k];
+    return all;
   }
 
   /// Adds the power of the complete segments in the buffer.
@@ -86,6 +113,11 @@ struct SpectrumAccumulator::State {
   }
 
   SpectrumOptions options;
+  /// Samples from the start of a part to the end of the first half segment of the whole series that
+  /// lies in it; the last half segment of them is the first of the buffer.
+  std::size_t head_wanted;
+  std::vector<double> head;
+  std::vector<double> appended;  ///< Σ |X|² of parts; empty: none
   LaneFourier fourier;
   std::vector<double> window;
   double window_power = 0.0;
@@ -96,9 +128,9 @@ struct SpectrumAccumulator::State {
   bool full_batch_seen = false;
 };
 
-SpectrumAccumulator::SpectrumAccumulator(SpectrumOptions options) {
+SpectrumAccumulator::SpectrumAccumulator(SpectrumOptions options, std::size_t first) {
   PM_EXPECTS(is_valid(options));
-  state_ = std::make_unique<State>(options);
+  state_ = std::make_unique<State>(options, first);
 }
 
 SpectrumAccumulator::SpectrumAccumulator(SpectrumAccumulator&&) noexcept = default;
@@ -108,6 +140,7 @@ SpectrumAccumulator::~SpectrumAccumulator() = default;
 void SpectrumAccumulator::add(View<double> samples) {
   std::vector<double>& buffer = state_->buffer;
   const std::size_t half = state_->half(), batch = (batch_segments + 1) * half;
+  samples = state_->fill_head(samples);
   while (!samples.empty()) {
     const std::size_t count = std::min(samples.size(), batch - buffer.size());
     buffer.insert(buffer.end(), samples.begin(), samples.begin() + static_cast<long>(count));
@@ -117,6 +150,47 @@ void SpectrumAccumulator::add(View<double> samples) {
     state_->full_batch_seen = true;
     buffer.erase(buffer.begin(), buffer.end() - static_cast<long>(half));
   }
+}
+
+void SpectrumAccumulator::append(const SpectrumAccumulator& part) {
+  const State& other = *part.state_;
+  PM_EXPECTS(other.options.segment == state_->options.segment);
+  add(other.head);
+  if (other.head.size() < other.head_wanted) return;
+  // The half segment at the end of the head is now the last of this buffer, and the first of that.
+  state_->flush();
+  PM_EXPECTS(state_->buffer.size() == state_->half() || other.head_wanted == 0);
+  State next = other;
+  next.flush();
+  state_->buffer = next.buffer;
+  state_->averaged += next.averaged;
+  state_->full_batch_seen = state_->full_batch_seen || next.full_batch_seen;
+  if (next.averaged == 0) return;
+  const std::vector<double> power = next.power();
+  state_->appended.resize(power.size(), 0.0);
+  for (std::size_t k = 0; k < power.size(); ++k) state_->appended[k] += power[k];
+}
+
+void SpectrumAccumulator::exchange(StateBytes& bytes, std::size_t samples) {
+  State& state = *state_;
+  state.flush();
+  if (!bytes.reading() && state.averaged > 0) {
+    state.appended = state.power();
+    std::vector<LaneReal>(state.sums.size()).swap(state.sums);
+  }
+  bytes(state.head);
+  bytes(state.buffer);
+  bytes(state.appended);
+  bytes(state.averaged);
+  bytes(state.full_batch_seen);
+  const std::size_t half = state.half(), segment = state.options.segment;
+  const std::size_t before = state.head_wanted == 0 ? 0 : state.head_wanted - half;
+  const std::size_t from_buffer = samples < state.head_wanted ? 0 : samples - before;
+  const std::size_t segments = from_buffer < segment ? 0 : from_buffer / half - 1;
+  if (state.head.size() != std::min(samples, state.head_wanted) ||
+      state.buffer.size() != from_buffer - segments * half || state.averaged > samples / half + 1 ||
+      state.appended.size() != (state.averaged > 0 ? half + 1 : 0))
+    bytes.fail();
 }
 
 Spectrum SpectrumAccumulator::finish() const {
@@ -141,7 +215,7 @@ Spectrum SpectrumAccumulator::finish() const {
   spectrum.window_bandwidth_hz = options.rate_hz * last.window_power / (window_sum * window_sum);
   if (last.averaged == 0) return spectrum;
   spectrum.edf_per_bin = equivalent_degrees_of_freedom(last.averaged);
-  spectrum.one_sided_psd = last.fourier.real_power(last.sums);
+  spectrum.one_sided_psd = last.power();
   const double scale = 2.0 / (options.rate_hz * static_cast<double>(last.averaged));
   for (double& psd : spectrum.one_sided_psd) psd *= scale;
   spectrum.one_sided_psd.front() *= 0.5;

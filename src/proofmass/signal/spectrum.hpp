@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "proofmass/core/result.hpp"
+#include "proofmass/core/state_bytes.hpp"
 #include "proofmass/core/view.hpp"
 
 namespace proofmass::signal {
@@ -39,16 +40,26 @@ struct Spectrum {
 /// Source: P. D. Welch, IEEE Trans. AU 15 (1967) 70; D. B. Percival, A. T. Walden, Spectral
 /// Analysis for Physical Applications (1993), section 6.17.
 ///
+/// A part of a longer series can be accumulated by itself: its segments are those of the whole, and
+/// the samples at its ends are kept for the segments that reach beyond it.
+///
 /// The result does not depend on how the series is divided into calls of add(), to the last digit.
 /// Cost: O(N log L), about 3 ns per sample; holds 35 L doubles.
 class SpectrumAccumulator {
  public:
-  explicit SpectrumAccumulator(SpectrumOptions options);
+  /// first: number of samples of the whole series before this part.
+  explicit SpectrumAccumulator(SpectrumOptions options, std::size_t first = 0);
   SpectrumAccumulator(SpectrumAccumulator&&) noexcept;
   SpectrumAccumulator& operator=(SpectrumAccumulator&&) noexcept;
   ~SpectrumAccumulator();
 
   void add(View<double> samples);
+
+  /// Adds the part that follows: made with the same options, its `first` where this one ends.
+  void append(const SpectrumAccumulator& part);
+
+  /// Fails where the state read is not that of `samples` samples with these options and `first`.
+  void exchange(StateBytes& bytes, std::size_t samples);
 
   /// The spectrum of the samples added. If they are fewer than one segment, the segment is the
   /// largest power of two that fits; if there is no valid segment, averaged is 0 and there are no

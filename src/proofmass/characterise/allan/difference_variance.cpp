@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "proofmass/characterise/allan/difference_kernels.hpp"
 #include "proofmass/core/contract.hpp"
@@ -92,13 +93,25 @@ std::size_t DifferenceVariances::stride(Statistic statistic,
   return overlaps(statistic) ? std::size_t{1} << level_of(m, least_overlap) : m;
 }
 
+DifferenceVariances::DifferenceVariances(Statistic statistic,
+                                         View<std::size_t> factors,
+                                         std::size_t least_overlap,
+                                         std::ptrdiff_t first)
+    : DifferenceVariances(statistic, factors, least_overlap) {
+  PM_EXPECTS(overlaps(statistic));
+  first_ = first;
+}
+
 void DifferenceVariances::add(View<double> samples) {
   for (std::size_t from = 0; from < samples.size(); from += chunk) {
     const View<double> part = samples.subspan(from, std::min(chunk, samples.size() - from));
     samples_ += part.size();
-    if (points_ == 0) begin();
     if (!started_) offset_ = mean_of_finite(part);
     if (gap_ == 0 && all_finite(part)) {
+      if (!started_) {
+        begin();
+        first_valid_ = part.front();
+      }
       add_complete(part);
     } else {
       std::ranges::for_each(part, [this](double y) { add_one(y); });
@@ -108,8 +121,18 @@ void DifferenceVariances::add(View<double> samples) {
   }
 }
 
-// θ[0], and before it Θ[0].
+// θ[0], and before it Θ[0]; of a part they are the last points of the part before it.
 void DifferenceVariances::begin() {
+  head_offset_ = offset_;
+  lead_ = std::exchange(gap_, 0);
+  PM_EXPECTS(!first_ || *first_ + static_cast<std::ptrdiff_t>(lead_) >= 0);
+  const std::size_t before =
+      first_ ? static_cast<std::size_t>(*first_ + static_cast<std::ptrdiff_t>(lead_)) : 0;
+  if (before > 0) {
+    start_ = points_ = before + (is_modified(statistic_) ? 2 : 1);
+    frame_.at = points_ - 1;
+    return;
+  }
   if (is_modified(statistic_)) append_point();
   append_point();
 }
@@ -142,7 +165,12 @@ void DifferenceVariances::add_one(double y) {
     ++gap_;
     return;
   }
-  if (started_ && gap_ > 0) close_gap(y);
+  if (!started_) {
+    begin();
+    first_valid_ = y;
+  } else if (gap_ > 0) {
+    close_gap(y);
+  }
   gap_ = 0;
   add_sample(y);
   last_ = y;
@@ -185,6 +213,7 @@ void DifferenceVariances::process(std::size_t worth) {
     Level& level = levels_[k];
     if (k > 0 && level.fresh < worth) return;
     for (Factor& factor : level.factors) take(level, factor, std::size_t{1} << k);
+    if (start_ > 0 && level.head.size() < level.span) fill_head(level, std::size_t{1} << k);
     if (k + 1 < levels_.size()) decimate(level, levels_[k + 1]);
     level.fresh = 0;
     forget(level);
@@ -219,21 +248,34 @@ void DifferenceVariances::take(const Level& level, Factor& factor, std::size_t s
   const std::size_t size = level.points.size();
   const std::size_t span = order_of(statistic_) * factor.spacing;
   if (level.fresh == 0 || level.newest < span) return;
-  // Of a term that ends at place e, the first point must be there: its number is e + first_number.
-  const std::size_t first_fresh = size - level.fresh;
-  const std::size_t first_number = level.newest + 1 - size;
-  const std::size_t begin = std::max(first_fresh, span > first_number ? span - first_number : 0);
+  // The first point of a term must be there; where points were dropped, those needed were kept.
+  const std::size_t begin = std::max(size - level.fresh, span);
   if (begin >= size) return;
-  const bool complete = missing_ == 0 || level.missing[size - 1] == level.missing[begin - span];
-  if (complete && overlaps(statistic_)) {
-    factor.sum += squared_differences(level.points.data() + begin - span, factor, size - begin);
-    factor.terms += size - begin;
-    return;
-  }
-  const std::size_t step = overlaps(statistic_) ? 1 : factor.spacing;
+  if (overlaps(statistic_)) return take_all(level, factor, begin, size, stride);
+  const std::size_t first_number = level.newest + 1 - size, step = factor.spacing;
   const std::size_t allowed = span * stride / missing_share;
   for (std::size_t e = begin + (step - (begin + first_number) % step) % step; e < size; e += step) {
     if (missing_ > 0 && level.missing[e] - level.missing[e - span] > allowed) continue;
+    factor.sum += squared_differences(level.points.data() + e - span, factor, 1);
+    ++factor.terms;
+  }
+}
+
+// The terms that end at the points from `begin` to `end`.
+void DifferenceVariances::take_all(const Level& level,
+                                   Factor& factor,
+                                   std::size_t begin,
+                                   std::size_t end,
+                                   std::size_t stride) const {
+  const std::size_t span = order_of(statistic_) * factor.spacing;
+  if (level.missing.empty() || level.missing[end - 1] == level.missing[begin - span]) {
+    factor.sum += squared_differences(level.points.data() + begin - span, factor, end - begin);
+    factor.terms += end - begin;
+    return;
+  }
+  const std::size_t allowed = span * stride / missing_share;
+  for (std::size_t e = begin; e < end; ++e) {
+    if (level.missing[e] - level.missing[e - span] > allowed) continue;
     factor.sum += squared_differences(level.points.data() + e - span, factor, 1);
     ++factor.terms;
   }
@@ -249,7 +291,8 @@ double DifferenceVariances::squared_differences(const double* x,
 // Differences of order d are invariant to polynomials below that order. These are subtracted from
 // the stored points to keep the integral small for any length and drift of the series.
 void DifferenceVariances::rebase() {
-  const double slope = theta_ / static_cast<double>(since_rebase_);
+  // The mean of a few samples says nothing about the others.
+  const double slope = since_rebase_ < chunk ? 0.0 : theta_ / static_cast<double>(since_rebase_);
   const auto now = static_cast<double>(points_ - 1);
   for (std::size_t k = 0; k < levels_.size(); ++k) {
     Level& level = levels_[k];
@@ -263,10 +306,194 @@ void DifferenceVariances::rebase() {
       number += 1.0;
     }
   }
+  if (start_ > 0) frame_ = sum(frame_, {slope, theta_, big_theta_, points_ - 1}, points_ - 1);
   offset_ += slope;
   theta_ = 0.0;
   big_theta_ = 0.0;
   since_rebase_ = 0;
+}
+
+double DifferenceVariances::in_frame(const Frame& frame, double t) const {
+  return is_modified(statistic_)
+             ? frame.big_theta + frame.theta * t + frame.offset * t * (t + 1.0) / 2.0
+             : frame.theta + frame.offset * t;
+}
+
+DifferenceVariances::Frame DifferenceVariances::moved(Frame frame, std::size_t at) {
+  const double by = static_cast<double>(at) - static_cast<double>(frame.at);
+  frame.big_theta += frame.theta * by + frame.offset * by * (by + 1.0) / 2.0;
+  frame.theta += frame.offset * by;
+  frame.at = at;
+  return frame;
+}
+
+DifferenceVariances::Frame DifferenceVariances::sum(const Frame& a,
+                                                    const Frame& b,
+                                                    std::size_t at) {
+  const Frame x = moved(a, at), y = moved(b, at);
+  return {x.offset + y.offset, x.theta + y.theta, x.big_theta + y.big_theta, at};
+}
+
+void DifferenceVariances::fill_head(Level& level, std::size_t stride) const {
+  const std::size_t size = level.points.size();
+  for (std::size_t e = size - level.fresh; e < size && level.head.size() < level.span; ++e) {
+    const std::size_t number = level.newest + 1 - size + e;
+    const double t = static_cast<double>(number * stride) - static_cast<double>(frame_.at);
+    level.head.push_back(level.points[e] + in_frame(frame_, t));
+    level.head_missing.push_back(level.missing.empty() ? 0 : level.missing[e]);
+  }
+}
+
+// Everything taken, and the integral zero at the end.
+void DifferenceVariances::settle() {
+  if (!started_) return;
+  process(0);
+  if (since_rebase_ > 0) rebase();
+  for (std::size_t k = 0; k < levels_.size(); ++k) {
+    Level& level = levels_[k];
+    level.newest = (points_ - 1) >> k;
+    const std::size_t old = level.points.size() - std::min(level.points.size(), level.span);
+    level.points.erase(level.points.begin(),
+                       level.points.begin() + static_cast<std::ptrdiff_t>(old));
+    if (!level.missing.empty())
+      level.missing.erase(level.missing.begin(),
+                          level.missing.begin() + static_cast<std::ptrdiff_t>(old));
+  }
+}
+
+void DifferenceVariances::append(DifferenceVariances part) {
+  PM_EXPECTS(first_ && part.first_ && part.levels_.size() == levels_.size());
+  PM_EXPECTS(*part.first_ == *first_ + static_cast<std::ptrdiff_t>(samples_));
+  samples_ += part.samples_;
+  if (!part.started_) {
+    gap_ += part.gap_;
+    return;
+  }
+  part.settle();
+  if (!started_) return begin_with(std::move(part));
+  gap_ += part.lead_;
+  if (gap_ > 0) close_gap(part.first_valid_);
+  settle();
+  PM_EXPECTS(points_ == part.start_);
+  const Frame step{part.head_offset_ - offset_, 0.0, 0.0, points_ - 1};
+  for (std::size_t k = 0; k < levels_.size(); ++k) join(levels_[k], part.levels_[k], k, step, part);
+  if (start_ > 0) frame_ = sum(sum(frame_, step, part.points_ - 1), part.frame_, part.points_ - 1);
+  points_ = part.points_;
+  offset_ = part.offset_;
+  missing_ += part.missing_;
+  last_ = part.last_;
+  gap_ = part.gap_;
+}
+
+// Only missing samples before it.
+void DifferenceVariances::begin_with(DifferenceVariances part) {
+  const auto first = first_;
+  const std::size_t samples = samples_, lead = gap_;
+  *this = std::move(part);
+  first_ = first;
+  samples_ = samples;
+  lead_ += lead;
+}
+
+void DifferenceVariances::join(Level& level,
+                               const Level& part,
+                               std::size_t k,
+                               const Frame& step,
+                               const DifferenceVariances& other) {
+  const std::size_t stride = std::size_t{1} << k, before = level.points.size();
+  const auto count = [&](std::size_t number, const Frame& frame) {
+    return static_cast<double>(number * stride) - static_cast<double>(frame.at);
+  };
+  // The terms across the border, in the frame before it.
+  Level across;
+  const bool complete = missing_ == 0 && other.missing_ == 0;
+  across.points = level.points;
+  if (!complete) across.missing = level.missing;
+  if (!complete) across.missing.resize(before, 0);
+  const std::size_t first_number = (other.start_ + stride - 1) / stride;
+  for (std::size_t e = 0; e < part.head.size(); ++e) {
+    across.points.push_back(part.head[e] + in_frame(step, count(first_number + e, step)));
+    if (!complete) across.missing.push_back(part.head_missing[e] + missing_);
+  }
+  for (std::size_t f = 0; f < level.factors.size(); ++f) {
+    const std::size_t span = order_of(statistic_) * level.factors[f].spacing;
+    const std::size_t begin = std::max(before, span);
+    const std::size_t end = std::min(before + span, across.points.size());
+    if (begin < end) take_all(across, level.factors[f], begin, end, stride);
+    level.factors[f].sum += part.factors[f].sum;
+    level.factors[f].terms += part.factors[f].terms;
+  }
+  for (std::size_t e = 0; e < part.head.size() && start_ > 0 && level.head.size() < level.span;
+       ++e) {
+    level.head.push_back(across.points[before + e] +
+                         in_frame(frame_, count(first_number + e, frame_)));
+    level.head_missing.push_back(complete ? 0 : across.missing[before + e]);
+  }
+  // The last points, in the frame after it.
+  const std::size_t kept = std::min(before, level.span - std::min(level.span, part.points.size()));
+  level.points.erase(level.points.begin(),
+                     level.points.begin() + static_cast<std::ptrdiff_t>(before - kept));
+  for (std::size_t e = 0; e < kept; ++e) {
+    const std::size_t number = first_number - kept + e;
+    level.points[e] -=
+        in_frame(step, count(number, step)) + in_frame(other.frame_, count(number, other.frame_));
+  }
+  level.points.insert(level.points.end(), part.points.begin(), part.points.end());
+  level.newest = part.newest;
+  level.fresh = 0;
+  if (complete) return;
+  level.missing.resize(before, 0);
+  level.missing.erase(level.missing.begin(),
+                      level.missing.begin() + static_cast<std::ptrdiff_t>(before - kept));
+  for (std::size_t e = 0; e < part.points.size(); ++e)
+    level.missing.push_back(missing_ + (part.missing.empty() ? 0 : part.missing[e]));
+}
+
+std::size_t DifferenceVariances::points_of_level(std::size_t k) const {
+  const std::size_t stride = std::size_t{1} << k;
+  return (points_ - 1) / stride + 1 - (start_ + stride - 1) / stride;
+}
+
+void DifferenceVariances::exchange(StateBytes& bytes, std::size_t samples) {
+  settle();
+  samples_ = samples;
+  bytes(started_);
+  bytes(gap_);
+  if (!started_) {
+    if (gap_ != samples) bytes.fail();
+    return;
+  }
+  for (std::size_t* count : {&lead_, &start_, &points_, &frame_.at}) bytes(*count);
+  bytes(missing_);
+  for (double* value : {&first_valid_, &last_, &offset_, &head_offset_, &frame_.offset,
+                        &frame_.theta, &frame_.big_theta})
+    bytes(*value);
+  const std::ptrdiff_t before = *first_ + static_cast<std::ptrdiff_t>(lead_);
+  const std::size_t begun = is_modified(statistic_) ? 2 : 1;
+  if (lead_ > samples || gap_ > samples - lead_ || before < 0 ||
+      start_ != (before == 0 ? 0 : static_cast<std::size_t>(before) + begun) ||
+      points_ != static_cast<std::size_t>(before) + begun + samples - lead_ - gap_ ||
+      (start_ > 0 && frame_.at != points_ - 1))
+    return bytes.fail();
+  for (std::size_t k = 0; k < levels_.size() && !bytes.failed(); ++k) exchange_level(bytes, k);
+}
+
+void DifferenceVariances::exchange_level(StateBytes& bytes, std::size_t k) {
+  Level& level = levels_[k];
+  for (Factor& factor : level.factors) {
+    bytes(factor.sum);
+    bytes(factor.terms);
+  }
+  bytes(level.points);
+  bytes(level.missing);
+  bytes(level.head);
+  bytes(level.head_missing);
+  level.newest = (points_ - 1) >> k;
+  const std::size_t points = std::min(level.span, points_of_level(k));
+  const std::size_t of_head = start_ > 0 ? points : 0;
+  if (level.points.size() != points || level.head.size() != of_head ||
+      level.head_missing.size() != of_head || level.missing.size() != (missing_ > 0 ? points : 0))
+    bytes.fail();
 }
 
 std::vector<PhaseVariance> DifferenceVariances::finish() const {

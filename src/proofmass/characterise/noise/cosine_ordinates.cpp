@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "proofmass/core/contract.hpp"
 #include "proofmass/signal/fourier.hpp"
 
 namespace proofmass::characterise {
@@ -153,6 +154,44 @@ std::complex<double> CosineVector::of_wave(double frequency_hz) const {
   return 0.5 * std::sqrt(2.0 * step_s / blocks) * std::polar(1.0, omega * start_s) * both;
 }
 
+BlockMeans::BlockMeans(double rate_hz, std::size_t first, std::size_t total)
+    : rate_hz_(rate_hz), is_part_(true) {
+  // What the blocks of the whole are in the end.
+  while (block_ < longest_block && total / block_ >= most_blocks) block_ *= 2;
+  before_ = taken_ = first % block_;
+}
+
+void BlockMeans::append(const BlockMeans& part) {
+  PM_EXPECTS(is_part_ && part.is_part_ && part.block_ == block_ && part.before_ == taken_);
+  if (part.sums_.empty()) {
+    sum_ += part.sum_;
+    valid_ += part.valid_;
+    taken_ = part.taken_;
+    return;
+  }
+  const std::size_t at = sums_.size();
+  sums_.insert(sums_.end(), part.sums_.begin(), part.sums_.end());
+  counts_.insert(counts_.end(), part.counts_.begin(), part.counts_.end());
+  sums_[at] += sum_;
+  counts_[at] = static_cast<std::uint16_t>(counts_[at] + valid_);
+  sum_ = part.sum_;
+  valid_ = part.valid_;
+  taken_ = part.taken_;
+}
+
+void BlockMeans::exchange(StateBytes& bytes, std::size_t samples) {
+  bytes(sums_);
+  bytes(counts_);
+  bytes(sum_);
+  bytes(valid_);
+  bytes(taken_);
+  const auto is_too_many = [&](std::uint16_t count) { return count > block_; };
+  if (sums_.size() != (before_ + samples) / block_ || counts_.size() != sums_.size() ||
+      taken_ != (before_ + samples) % block_ || valid_ > block_ ||
+      std::ranges::any_of(counts_, is_too_many))
+    bytes.fail();
+}
+
 void BlockMeans::add(View<double> samples) {
   std::size_t k = 0;
   while (k < samples.size()) {
@@ -181,7 +220,7 @@ void BlockMeans::close_block() {
   counts_.push_back(static_cast<std::uint16_t>(valid_));
   sum_ = 0.0;
   valid_ = taken_ = 0;
-  if (sums_.size() == most_blocks && block_ < longest_block) halve();
+  if (!is_part_ && sums_.size() == most_blocks && block_ < longest_block) halve();
 }
 
 void BlockMeans::halve() {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "proofmass/core/state_bytes.hpp"
 #include "proofmass/core/view.hpp"
 
 namespace proofmass::characterise {
@@ -39,8 +40,18 @@ class BlockMeans {
  public:
   explicit BlockMeans(double rate_hz) : rate_hz_(rate_hz) {}
 
+  /// A part of a series of `total` samples, with `first` before it: its blocks are those of the
+  /// whole, and those at its ends are continued by append().
+  BlockMeans(double rate_hz, std::size_t first, std::size_t total);
+
   /// NaN is missing.
   void add(View<double> samples);
+
+  /// Adds the part that follows.
+  void append(const BlockMeans& part);
+
+  /// Fails where the state read is not that of such a part with `samples` samples.
+  void exchange(StateBytes& bytes, std::size_t samples);
 
   /// Sets the final rate.
   void set_rate(double rate_hz) { rate_hz_ = rate_hz; }
@@ -75,6 +86,8 @@ class BlockMeans {
   std::vector<std::uint16_t> counts_;  ///< valid samples in each block
   double sum_ = 0.0;                   ///< of the current block
   std::size_t valid_ = 0, taken_ = 0;
+  std::size_t before_ = 0;  ///< samples of the first block that are before this part
+  bool is_part_ = false;    ///< the length of the blocks is final
 };
 
 }  // namespace proofmass::characterise

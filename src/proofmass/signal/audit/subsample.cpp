@@ -35,6 +35,26 @@ void Subsample::add(View<double> values) {
   seen_ = end;
 }
 
+void Subsample::append(const Subsample& part) {
+  Subsample other = part;
+  while (level_ < other.level_) halve();
+  while (other.level_ < level_) other.halve();
+  kept_.insert(kept_.end(), other.kept_.begin(), other.kept_.end());
+  while (kept_.size() >= capacity_) halve();
+  seen_ += other.seen_;
+  next_ = std::max(seen_, kept_.size() << level_);
+}
+
+void Subsample::exchange(StateBytes& bytes, std::size_t most) {
+  while (!bytes.reading() && kept_.size() > most) halve();
+  bytes(kept_);
+  bytes(seen_);
+  bytes(level_);
+  constexpr unsigned highest_level = 40;
+  if (kept_.size() > most || kept_.size() > seen_ || level_ > highest_level) bytes.fail();
+  next_ = std::max(seen_, kept_.size() << std::min(level_, highest_level));
+}
+
 void Subsample::halve() {
   for (std::size_t k = 0; k < kept_.size() / 2; ++k)
     kept_[k] = kept_[2 * k + (hash(k, level_) >> 63)];

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "proofmass/core/state_bytes.hpp"
 #include "proofmass/core/view.hpp"
 
 namespace proofmass::signal {
@@ -20,6 +21,13 @@ class Subsample {
   explicit Subsample(std::size_t capacity = usual_capacity) : capacity_(capacity) {}
 
   void add(View<double> values);
+
+  /// Adds the sample of the part of the series that follows. The evenness stays, the choice is
+  /// another than that of the whole series.
+  void append(const Subsample& part);
+
+  /// Writes at most `most` values, thinned out further for that.
+  void exchange(StateBytes& bytes, std::size_t most);
 
   [[nodiscard]] View<double> values() const& { return kept_; }
   [[nodiscard]] std::vector<double> values() && { return std::move(kept_); }
