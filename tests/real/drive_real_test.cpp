@@ -71,7 +71,8 @@ TEST(CarDrive, DoesNotFollowTheWanderOfTheFixes) {
   // The stamps are ten times too long, the line through the fixes a quarter.
   EXPECT_DOUBLE_EQ(solved->fixes->time_scale, 0.1);
   EXPECT_GT(solved->fixes->path_m, 180.0);
-  // A least-squares fit of one wheel's dead reckoning to the fixes, by another program, has 143.3 m.
+  // A least-squares fit of one wheel's dead reckoning to the fixes, by another program, has 143.3
+  // m.
   EXPECT_NEAR(solved->distance_m->value, 143.3, 1.0);
   EXPECT_LT(solved->distance_m->std, 1.5);
   // The turns of the wheels were counted by two other methods.
