@@ -98,8 +98,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Scenario{"one speed", [](SimulatedEncoder&, std::mt19937_64&) {}},
                     Scenario{"two speeds",
                              [](SimulatedEncoder& wheel, std::mt19937_64&) {
-                               wheel.speed_radps = [](double t) {
-                                 return 1.152 + 1.048 * std::clamp((t - 60.0) / 3.0, 0.0, 1.0);
+                               wheel.speed_radps = [](double time_s) {
+                                 return 1.152 + 1.048 * std::clamp((time_s - 60.0) / 3.0, 0.0, 1.0);
                                };
                              }},
                     Scenario{"missed counts",
