@@ -133,6 +133,7 @@ struct SlipCandidate {
 };
 
 constexpr std::size_t narrowest = 4, widest = 256;
+constexpr std::size_t blur = 5;  ///< bins
 
 /// The most significant step that is a whole number of counts. One that is none hides what overlaps
 /// with it, since windows beside it see any part of it.
@@ -161,7 +162,7 @@ SlipCandidate strongest(const std::vector<double>& values, double step_rad) {
 }
 
 /// The boundary within the window at which a step of this size leaves the least squares, and the
-/// range in which they are up to 4 variances more.
+/// range in which they are up to 4 variances more, and five bins to either side.
 CountSlip located(const SlipCandidate& found,
                   const std::vector<double>& values,
                   const std::vector<double>& times,
@@ -184,16 +185,16 @@ CountSlip located(const SlipCandidate& found,
     const std::size_t at = std::clamp<std::size_t>(first + i, 1, times.size() - 1);
     return 0.5 * (times[at - 1] + times[at]);
   };
-  bool any = false;
+  std::size_t earliest = costs.size(), latest = 0;
   for (std::size_t i = 0; i < costs.size(); ++i) {
     if (costs[i] == least) slip.time_s = boundary_s(i);
     if (costs[i] > least + 4.0) continue;
-    const double half_s = 0.5 * (times[std::min(first + i, times.size() - 1)] -
-                                 times[std::min(first + i, times.size() - 1) - 1]);
-    if (!any) slip.start_s = boundary_s(i) - half_s;
-    slip.end_s = boundary_s(i) + half_s;
-    any = true;
+    earliest = std::min(earliest, i);
+    latest = i;
   }
+  // Errors within a turn, fitted while the step is still there, move the least by some bins.
+  slip.start_s = boundary_s(earliest - std::min(earliest, blur));
+  slip.end_s = boundary_s(latest + blur);
   return slip;
 }
 
