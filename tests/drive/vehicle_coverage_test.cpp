@@ -17,12 +17,14 @@ TEST_P(Coverages, HoldForEveryQuantity) {
     if (coverage.recordings == 0) continue;
     EXPECT_LT(coverage.largest, 5.0) << name;
     // Below 24 of 30 an interval that holds 95 % of the time has a probability of 0.3 %.
-    if (coverage.recordings >= 24) EXPECT_GE(coverage.percent(), 80.0) << name;
+    if (coverage.recordings >= 24) {
+      EXPECT_GE(coverage.percent(), 80.0) << name;
+    }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Vehicle, Coverages, testing::ValuesIn(scenarios()), [](const auto& info) {
-  std::string name = info.param.name;
+INSTANTIATE_TEST_SUITE_P(Vehicle, Coverages, testing::ValuesIn(scenarios()), [](const auto& of) {
+  std::string name = of.param.name;
   for (char& c : name)
     if (c == '-') c = '_';
   return name;

@@ -26,11 +26,13 @@ struct GyroscopeUse {
   std::string unit_if_unknown = "rad/s";
 };
 
-/// An accelerometer with its gyroscope; sample k is at begin_s + time.at(k). Throws Failure.
+/// An accelerometer with its gyroscope, calibrated by `model` unless that is null; sample k is at
+/// begin_s + time.at(k). Throws Failure.
 [[nodiscard]] estimate::WheelSensor wheel_sensor(const Recording& recording,
                                                  const sensor::Accelerometer& from,
                                                  double begin_s,
                                                  const GyroscopeUse& gyroscope,
+                                                 const sensor::SensorModel* model,
                                                  std::vector<Note>& notes);
 
 /// One or two accelerometers of one run, calibrated and in m/s^2, with their gyroscopes. Throws

@@ -106,7 +106,8 @@ estimate::WheelSensor inertial_sensor(std::vector<Recording>& one,
     throw Failure(usage, fmt::format("{}: {} accelerometers, expected one: choose with --channel",
                                      one.front().source, found.size()));
   calibrate(models, found, one);
-  return wheel_sensor(one.front(), found.front(), begin_s, gyroscope, notes);
+  return wheel_sensor(one.front(), found.front(), begin_s, gyroscope, sensor_model_of(models, 0),
+                      notes);
 }
 
 // Reads one recording of the vehicle after the other.
