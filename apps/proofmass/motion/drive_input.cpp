@@ -8,6 +8,7 @@
 
 #include "cli/console.hpp"
 #include "cli/exit_status.hpp"
+#include "input/gyroscope.hpp"
 #include "input/input.hpp"
 #include "proofmass/core/units.hpp"
 
