@@ -61,7 +61,8 @@ Value verb_row(const Verb& verb, const CLI::App& flags) {
   bool many_files = false;
   for (const CLI::Option* option : flags.get_options()) {
     if (option->get_positional()) many_files = option->get_expected_max() > 1;
-    if (option->get_lnames().empty()) continue;
+    const bool is_hidden = option->get_group().empty();
+    if (option->get_lnames().empty() || is_hidden) continue;
     const std::string& name = option->get_lnames().front();
     if (std::ranges::find(of_the_command, name) == of_the_command.end())
       options.push_back(option_row(*option));

@@ -223,6 +223,12 @@ Fitted fit_path(const Recorded& recorded,
   std::vector<Epoch> epochs = epochs_of(recorded, vehicle);
   Model model{.epochs = &epochs, .vehicle = vehicle, .noise = {}, .with_fixes = false};
   set_motion_noise(epochs, vehicle, model.noise);
+  if (effort != Effort::full) {
+    // A steered wheel's angle is predicted from the yaw rate: walks wider than the motion's would
+    // count against every hypothesis that has one.
+    model.noise.speed_psd /= loose;
+    model.noise.rate_psd /= loose;
+  }
   Gaussian<at::states> prior = prior_of(recorded, setting);
   fitted.pass = first_pass(model, prior, recorded.fixes && !recorded.has_yaw());
   if (recorded.fixes) {
