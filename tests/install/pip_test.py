@@ -4,20 +4,14 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from importlib.util import find_spec
 
 SOURCE = os.environ["SOURCE"]
 
-try:
-    import pip  # noqa: F401
-    import setuptools  # noqa: F401
-    import wheel  # noqa: F401
-
-    MISSING = ""
-except ImportError as problem:
-    MISSING = problem.name
+MISSING = [name for name in ("pip", "setuptools", "wheel") if find_spec(name) is None]
 
 
-@unittest.skipIf(MISSING, f"there is no {MISSING}")
+@unittest.skipIf(MISSING, f"there is no {', '.join(MISSING)}")
 class Pip(unittest.TestCase):
     def test_installs_a_module_that_works(self):
         with tempfile.TemporaryDirectory() as place:
