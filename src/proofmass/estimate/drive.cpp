@@ -361,20 +361,33 @@ Fitted fit_best(const std::vector<DriveWheel>& wheels,
   const Effort effort = choices.size() <= 2 ? Effort::comparison : Effort::quick_comparison;
   Steered chosen = choices.front();
   double first = 0.0, best = -INFINITY;
+  std::vector<double> likelihoods;
   for (const Steered& steered : choices) {
     // Without a gyroscope the wheels of one axle do not show whether they steer.
     if (choices.size() == 1 || !all.recorded.has_yaw()) break;
     set_geometry(wheels, options, steered, all.setting);
     const double now = fit_path(all.recorded, all.setting, effort, {}).pass.log_likelihood;
     if (!std::isfinite(best)) first = now;
+    likelihoods.push_back(now);
     if (now > best + (std::isfinite(best) ? clear : 0.0)) {
       best = now;
       chosen = steered;
     }
   }
   set_geometry(wheels, options, chosen, all.setting);
-  if (std::ranges::find(chosen, true) == chosen.end() && choices.size() > 1)
-    warn_of_steering(wheels, all.recorded.wheels, solution);
+  const bool none = std::ranges::find(chosen, true) == chosen.end();
+  if (none && choices.size() > 1) warn_of_steering(wheels, all.recorded.wheels, solution);
+  // A single wheel shows by the fixes alone that it steers, which wander.
+  const bool alike =
+      std::ranges::count_if(likelihoods, [&](double one) { return one > best - clear; }) > 1;
+  if (alike || (wheels.size() == 1 && !likelihoods.empty()))
+    solution.notes.push_back(
+        {Severity::warning,
+         "the motion does not show which wheels are on the steered axle: " +
+             (none ? std::string("all are taken as unsteered")
+                   : names_of(wheels, chosen) + " are taken to be") +
+             ", and the heading is off by the change of the steering angle if they are not; state "
+             "them with --front"});
   if (choices.size() > 1 && best > first)
     solution.notes.push_back({Severity::info, "the motion shows that " + names_of(wheels, chosen) +
                                                   " are on the steered axle; --front states it"});
