@@ -54,29 +54,6 @@ test("the token leaves the address, and a reload keeps the view", async () => {
   await close();
 });
 
-test("sensor files are shown, compared and exported", async () => {
-  const { page, problems, close } = await open("v=recordings");
-  const files = page.locator("section[aria-label='Sensor files']");
-  await files.locator("tr", { hasText: "quiet.toml" }).locator("text=Show").click();
-  await page.waitForSelector(".conclusion", { timeout: patience });
-  assert.match(await page.innerText("main"), /white/i);
-  await shot(page, "sensor-show");
-  await page.goto(`${base()}/?v=recordings`);
-  await files.locator("tr", { hasText: "quiet.toml" }).locator("text=Compare…").click();
-  await page.selectOption("select[aria-label='Sensor file 2']", "loud.toml");
-  await page.click("button[type=submit]");
-  await page.waitForSelector(".conclusion", { timeout: patience });
-  await shot(page, "sensor-diff");
-  await page.goto(`${base()}/?v=recordings`);
-  await files.locator("tr", { hasText: "loud.toml" }).locator("text=Export…").click();
-  await page.selectOption("#option-format", "c-header");
-  await page.click("button[type=submit]");
-  await page.waitForSelector("pre >> text=/#define/", { timeout: patience });
-  await shot(page, "sensor-export");
-  assert.deepEqual(problems, []);
-  await close();
-});
-
 test("the list shows what inspect says, and its keys work", async () => {
   const { page, close } = await open();
   await page.waitForFunction(() => document.querySelectorAll(".row canvas").length === 4, null, { timeout: patience });
@@ -233,4 +210,27 @@ test("axe finds nothing serious in any view, in light and dark, on a desk and on
     await visit("compare", "v=compare&runs=1,2", ".uplot");
     await close();
   }
+});
+
+test("sensor files are shown, compared and exported", async () => {
+  const { page, problems, close } = await open("v=recordings");
+  const files = page.locator("section[aria-label='Sensor files']");
+  await files.locator("tr", { hasText: "quiet.toml" }).locator("text=Show").click();
+  await page.waitForSelector(".conclusion", { timeout: patience });
+  assert.match(await page.innerText("main"), /white/i);
+  await shot(page, "sensor-show");
+  await page.goto(`${base()}/?v=recordings`);
+  await files.locator("tr", { hasText: "quiet.toml" }).locator("text=Compare…").click();
+  await page.selectOption("select[aria-label='Sensor file 2']", "loud.toml");
+  await page.click("button[type=submit]");
+  await page.waitForSelector(".conclusion", { timeout: patience });
+  await shot(page, "sensor-diff");
+  await page.goto(`${base()}/?v=recordings`);
+  await files.locator("tr", { hasText: "loud.toml" }).locator("text=Export…").click();
+  await page.selectOption("#option-format", "c-header");
+  await page.click("button[type=submit]");
+  await page.waitForSelector("pre >> text=/#define/", { timeout: patience });
+  await shot(page, "sensor-export");
+  assert.deepEqual(problems, []);
+  await close();
 });
