@@ -57,7 +57,8 @@ TEST(StateBytes, FailsWhereverTheBytesEnd) {
     thing.exchange(bytes);
     EXPECT_TRUE(bytes.failed()) << length;
   }
-  StateBytes more(written + "x");
+  const std::string longer = written + "x";
+  StateBytes more(longer);
   Thing().exchange(more);
   EXPECT_FALSE(more.complete());
 }
