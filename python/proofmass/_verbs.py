@@ -301,7 +301,7 @@ def calibrate(
     counts_per_turn : float, optional
         Quadrature counts of one turn of the encoder.
     wrap : float, optional
-        The count starts again after so many, such as 65536 (default: it does not, or after a turn).
+        Number of counts at which the counter wraps, such as 65536 (default: none, or one turn).
     index : str, optional
         Channel of the index pulse, where the angle is 0.
     edges : path, optional

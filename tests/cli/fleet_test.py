@@ -54,7 +54,7 @@ class BySensor(FleetTest):
     HOURS, RATE_HZ = 24, 12.5
 
     def day(self, samples, missing, own_clock=True, hours=HOURS):
-        """`hours` files of so many samples, so many missing behind each; and all of them in one file. A walk and white noise."""
+        """`hours` files of equal length, each followed by missing samples; and all of them in one file. A walk and white noise."""
         draw = random.Random(11)
         level, whole = 0.0, []
         lines = ["path,sensor,date"]

@@ -31,7 +31,7 @@ std::string file_text(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Of a recording that a worker has fetched: the name of the copy means nothing here.
+// Name of a recording that a worker has fetched, without that of its temporary copy.
 void name_source(const std::string& path, const std::string& file) {
   auto read = fleet::sums_of_text(file_text(path));
   if (!read) return;
@@ -42,7 +42,7 @@ void name_source(const std::string& path, const std::string& file) {
 
 }  // namespace
 
-// Of all that the sums of a recording depend on beside its bytes and its place.
+// Key of everything that the sums of a recording depend on, except its bytes and its place.
 std::string Run::key_of(const Job& job) const {
   std::string text = std::string(version()) + "\n" + program_commit();
   for (const std::string& flag : verb_flags(job)) {
@@ -213,7 +213,7 @@ Status Run::run_groups() {
   place_recordings();
   if (const Status ran = run_tasks(sums_to_make()); !ran) return ran;
   if (interruption_waits()) return Done{};
-  // Of the sums of all: little work, and the sums are here.
+  // Joining takes little time and needs the files here, so this process does it.
   const std::vector<std::size_t> order = groups_to_join();
   return order.empty() ? Status(Done{}) : run_here(order);
 }

@@ -141,9 +141,10 @@ void add_encoder_flags(CLI::App& verb, EncoderFlags& flags, const char* wanted) 
                   "quadrature counts of one turn of the encoder")
       ->type_name("N")
       ->check(positive());
-  verb.add_option("--wrap", flags.wrap,
-                  "the count starts again after so many, such as 65536 (default: it does not, or "
-                  "after a turn)")
+  verb.add_option(
+          "--wrap", flags.wrap,
+          "number of counts at which the counter wraps, such as 65536 (default: none, or one "
+          "turn)")
       ->type_name("COUNTS")
       ->check(positive());
   verb.add_option("--index", flags.index, "channel of the index pulse, where the angle is 0")

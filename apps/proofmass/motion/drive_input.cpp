@@ -252,8 +252,7 @@ DriveInput drive_input(const DriveFiles& files,
   for (const std::string& file : files.front)
     if (std::ranges::find(files.right, file) == files.right.end() &&
         std::ranges::find(files.left, file) == files.left.end())
-      throw Failure(usage,
-                    fmt::format("--front {}: is none of the wheels of --right and --left", file));
+      throw Failure(usage, fmt::format("--front {}: expected a file of --right or --left", file));
   DriveInput input;
   Reader reader(flags, gyroscope, output, input);
   for (const std::string& file : files.right)

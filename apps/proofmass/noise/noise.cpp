@@ -60,7 +60,7 @@ void add_noise_flags(CLI::App& verb, NoiseCommand& command) {
       ->delimiter(',')
       ->check(finite())
       ->needs(as_one);
-  // Of the fleet: its processes make the sums, and join them.
+  // Hidden: used by the processes of `fleet noise --by`.
   add("--sums", command.sums, "KEY/PLACE", "print the sums of one file, to be joined by --as-one")
       ->group("");
   add("--temperature", command.temperature, "NAME",

@@ -66,7 +66,7 @@ struct EncoderShare {
 
 struct EncoderCalibration {
   std::array<EncoderHarmonic, encoder_orders> harmonics{};
-  /// Of c1 s1 c2 s2, to be applied to another recording.
+  /// Covariance of c1 s1 c2 s2 for use with another recording.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   std::vector<EncoderShare> shares;
   double step_rad = 0.0;

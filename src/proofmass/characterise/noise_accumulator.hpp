@@ -10,7 +10,7 @@
 
 namespace proofmass::characterise {
 
-/// Up to so many samples every term of a deviation is used; beyond, sixteen or more per τ.
+/// Number of samples up to which every term of a deviation is used; beyond, sixteen or more per τ.
 inline constexpr std::size_t decimate_above = std::size_t{1} << 20;
 
 /// Terms per τ after decimation of long recordings.

@@ -12,7 +12,7 @@
 namespace proofmass::characterise {
 namespace {
 
-// Of a part, as its state is written; an hour's samples are as many as a day's single ones.
+// Size of the subsample in the stored state of a part.
 constexpr std::size_t most_of_sample = signal::Subsample::usual_capacity / 16;
 
 }  // namespace

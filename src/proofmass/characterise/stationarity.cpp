@@ -68,8 +68,8 @@ std::vector<double> independent_means(EqualSpans spans, double excess_correlatio
   return means;
 }
 
-// Of a part: short enough for any total that has as many digits in binary as this one, as those of
-// the whole series would have grown to.
+// Length of a part's spans, for any total with as many binary digits as this one: no longer than
+// those that the whole series would have.
 std::size_t length_of_spans(std::size_t total, std::size_t octave) {
   constexpr std::size_t log2_most = 9;
   const auto digits = static_cast<std::size_t>(std::bit_width(total));

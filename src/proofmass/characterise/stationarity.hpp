@@ -40,7 +40,7 @@ class EqualSpans {
   void append(const EqualSpans& part);
   /// The spans of a whole series, which were of fixed length, as if they had grown with it.
   void grow();
-  /// Fails where the state read is not that of so many values, with `first` before them.
+  /// Fails if the state read does not describe `values` values after `first` others.
   void exchange(StateBytes& bytes, std::size_t first, std::size_t values);
   /// Merges neighbouring spans.
   void halve();

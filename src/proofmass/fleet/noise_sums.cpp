@@ -76,7 +76,7 @@ std::optional<std::size_t> whole_number(std::string_view text) {
   return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
 }
 
-// Of "a b c" the words.
+// The words of "a b c".
 std::vector<std::string_view> words_of(std::string_view text, char separator) {
   std::vector<std::string_view> words;
   while (true) {

@@ -29,7 +29,7 @@ Result<std::vector<double>> starts_of(const std::vector<RecordingSums>& parts,
   return starts_s;
 }
 
-// Of each channel of the first recording, the first valid sample on the grid.
+// First valid sample on the grid, for each channel of the first recording.
 Result<std::vector<std::size_t>> origins_of(const std::vector<RecordingSums>& parts,
                                             const std::vector<std::size_t>& firsts) {
   std::vector<std::size_t> origins;

@@ -12,7 +12,7 @@ namespace proofmass::calibrate {
 namespace encoder {
 inline constexpr Eigen::Index errors = 0;  // c1 s1 … c4 s4
 inline constexpr Eigen::Index delay = encoder_parameters, runout = delay + 1, common = runout + 4;
-/// Of an axis, relative to axis().
+/// Parameters of an axis, relative to axis().
 inline constexpr Eigen::Index sin = 0, cos = 1, nonlinear = 2, drift = 6, drift_terms = 4,
                               each = drift + drift_terms;
 /// The parameters on which one axis depends: the common ones, its sensor's lever arm, its own.

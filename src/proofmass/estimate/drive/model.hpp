@@ -128,7 +128,7 @@ struct Pass {
   std::vector<Mat<at::states>> path;  ///< smoothed means
   Gaussian<at::states> end;           ///< at the last epoch
   Gaussian<at::states> start;         ///< smoothed, at the first
-  /// Of Seen, for each epoch.
+  /// Covariance of seen() at each epoch.
   std::vector<Mat<seen_states, seen_states>> seen_cov;
   double log_likelihood = 0.0;
   double nis = 0.0;
