@@ -199,11 +199,14 @@ Table datasheets_table(const BudgetReport& report) {
 Section parts_section(const BudgetReport& report) {
   Section section{
       .heading = "Parts by their datasheets",
-      .paragraphs = {"A typical figure counts as one standard deviation, a limit as that of a "
-                     "uniform distribution. Between two rests a constant bias cancels: what "
-                     "remains is √(N² t³/12 + B² t⁴/(16 π)). Drift of the bias that a datasheet "
-                     "does not state (flicker, random walk), scale error and a change of tilt "
-                     "are not included: characterise the device with noise and calibrate."},
+      .paragraphs =
+          {"A typical figure counts as one standard deviation, a limit as that of a "
+           "uniform distribution. Between two rests a constant bias cancels: what "
+           "remains is √(N² t³/12 + B² t⁴/(16 π)). Drift of the bias that a datasheet "
+           "does not state (flicker, random walk), scale error and a change of tilt "
+           "are not included: characterise the device with noise and calibrate. The figures were "
+           "transcribed by hand, most of them without a comparison with the current "
+           "revision: check those that matter in the datasheet."},
       .on_terminal = true};
   for (std::size_t at = 0; at < report.parts.front().errors.size(); ++at)
     section.tables.push_back(jobs_table(report, at));
