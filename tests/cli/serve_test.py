@@ -221,6 +221,7 @@ class Serve(CommandTest):
         self.start()
         verbs = {verb["name"]: verb for verb in self.get("/api/verbs")["verbs"]}
         self.assertLessEqual({"inspect", "noise", "wheel", "track", "tilt", "tune", "calibrate", "tumble"}, set(verbs))
+        self.assertNotIn("drive", verbs, "it has no list of recordings")
         options = {option["name"]: option for option in verbs["noise"]["options"]}
         self.assertEqual(options["statistic"]["default"], "oadev")
         self.assertIn("theo1", options["statistic"]["choices"])

@@ -56,6 +56,11 @@ bool has(const CLI::App& flags, const char* name) {
   return flags.get_option_no_throw(name) != nullptr;
 }
 
+bool takes_files(const CLI::App& flags) {
+  return std::ranges::any_of(flags.get_options(),
+                             [](const CLI::Option* option) { return option->get_positional(); });
+}
+
 Value verb_row(const Verb& verb, const CLI::App& flags) {
   Array options;
   bool many_files = false;
@@ -107,7 +112,9 @@ std::string flag_table() {
   for (const Verb& verb : all_verbs()) {
     CLI::App flags;
     verb.add_flags(flags);
-    if (verb.input != nullptr && has(flags, "--page")) rows.push_back(verb_row(verb, flags));
+    // drive has a flag for each wheel, which a list of recordings does not fill in.
+    if (verb.input != nullptr && has(flags, "--page") && takes_files(flags))
+      rows.push_back(verb_row(verb, flags));
     if (verb.text.name == "sensor")
       for (const SensorAction& action : sensor_actions) rows.push_back(action_row(action, flags));
   }

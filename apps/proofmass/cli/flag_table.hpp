@@ -4,8 +4,8 @@
 
 namespace proofmass::app {
 
-/// The verbs that read recordings and return a page, and the actions of `sensor`, with their flags,
-/// as JSON for programs that generate forms:
+/// The verbs that take a list of recordings and return a page, and the actions of `sensor`, with
+/// flags, as JSON for programs that generate forms:
 /// {"verbs": [{"name", "group", "help", "reads", "many_files", "page", "series", "sensor_file",
 ///   "options": [{"name", "group", "help", "type", "choices", "default", "switch", "many", "file",
 ///   "required"}]}]}

@@ -75,7 +75,7 @@ void add_vehicle_flags(CLI::App& verb, DriveCommand& command) {
 void add_drive_flags(CLI::App& verb, DriveCommand& command) {
   add_vehicle_flags(verb, command);
   verb.add_option("--counts-per-turn", command.named.counts_per_turn,
-                  "of wheels with an encoder instead of an accelerometer")
+                  "counts per turn of wheels with an encoder instead of an accelerometer")
       ->type_name("N")
       ->check(positive());
   verb.add_option("--bandwidth", command.bandwidth_hz,
