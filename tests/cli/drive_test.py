@@ -126,6 +126,8 @@ class Vehicle(CommandTest):
     def test_what_is_missing_is_said(self):
         self.assertIn("--right", self.expect_failure(USAGE, "drive", "--frame", "right.csv"))
         self.assertIn("--gnss", self.expect_failure(USAGE, "drive", "--right", "right.csv", "--geojson", "a.geojson"))
+        self.assertIn("twice", self.expect_failure(USAGE, "drive", "--right", "right.csv", "--left", "right.csv"))
+        self.assertIn("metres", self.expect_failure(USAGE, "drive", "--right", "right.csv", "--circumference", "1800"))
         line = self.expect_failure(USAGE, "drive", "--right", "right.csv", "--circumference", "1.8", "1.9")
         self.assertIn("2 values for 1 wheels", line)
         self.assertIn("--front", self.expect_failure(USAGE, "drive", "--right", "right.csv", "--front", "left.csv"))

@@ -26,6 +26,11 @@ struct DriveCommand {
   OutputFlags output;
 };
 
+// Lengths of a vehicle: one in millimetres is refused.
+CLI::Validator vehicle_length() {
+  return number("metres, from 0.02 to 50", [](double x) { return x >= 0.02 && x <= 50.0; });
+}
+
 void add_vehicle_flags(CLI::App& verb, DriveCommand& command) {
   verb.add_option("--right", command.named.right, "recordings of the wheels on the right")
       ->type_name("FILE...");
@@ -47,7 +52,7 @@ void add_vehicle_flags(CLI::App& verb, DriveCommand& command) {
               "rolling circumference: one for all wheels, or one for each, those of --right "
               "first")
           ->type_name("M...")
-          ->check(positive());
+          ->check(vehicle_length());
   verb.add_option("--circumference-std", command.circumference_std_m,
                   "its standard deviation (default: 0.3 %)")
       ->type_name("M")
@@ -56,7 +61,7 @@ void add_vehicle_flags(CLI::App& verb, DriveCommand& command) {
   CLI::Option* track =
       verb.add_option("--track", command.track_m, "track width: between the wheels of an axle")
           ->type_name("M")
-          ->check(positive());
+          ->check(vehicle_length());
   verb.add_option("--track-std", command.track_std_m, "its standard deviation (default: 2 %)")
       ->type_name("M")
       ->check(positive())
@@ -64,7 +69,7 @@ void add_vehicle_flags(CLI::App& verb, DriveCommand& command) {
   CLI::Option* wheelbase =
       verb.add_option("--wheelbase", command.wheelbase_m, "between the axles of a steered vehicle")
           ->type_name("M")
-          ->check(positive());
+          ->check(vehicle_length());
   verb.add_option("--wheelbase-std", command.wheelbase_std_m,
                   "its standard deviation (default: 2 %)")
       ->type_name("M")

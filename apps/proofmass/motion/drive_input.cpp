@@ -253,6 +253,11 @@ DriveInput drive_input(const DriveFiles& files,
     if (std::ranges::find(files.right, file) == files.right.end() &&
         std::ranges::find(files.left, file) == files.left.end())
       throw Failure(usage, fmt::format("--front {}: expected a file of --right or --left", file));
+  std::vector<std::string> wheels = files.right;
+  wheels.insert(wheels.end(), files.left.begin(), files.left.end());
+  std::ranges::sort(wheels);
+  if (const auto twice = std::ranges::adjacent_find(wheels); twice != wheels.end())
+    throw Failure(usage, *twice + ": is given twice, as the recording of two wheels");
   DriveInput input;
   Reader reader(flags, gyroscope, output, input);
   for (const std::string& file : files.right)

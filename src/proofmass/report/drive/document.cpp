@@ -18,15 +18,18 @@ using estimate::DriveWheelFit;
 constexpr Display in_degrees{"°", deg_per_rad}, in_milliseconds{"ms", 1e3};
 
 std::string path_words(const DriveSolution& solution) {
+  const std::string turned = degree_words(solution.heading_change_rad);
   std::string words;
-  if (solution.distance_m)
-    words = fmt::format("The vehicle travelled {}", with_std(*solution.distance_m, "m"));
+  if (solution.distance_m && solution.heading_change_rad)
+    words = fmt::format("The vehicle travelled {} and turned by {}",
+                        with_std(*solution.distance_m, "m"), turned);
+  else if (solution.distance_m)
+    words = fmt::format("The vehicle travelled {}; its heading is not observable",
+                        with_std(*solution.distance_m, "m"));
+  else if (solution.heading_change_rad)
+    words = fmt::format("The vehicle turned by {}; the distance is not determined", turned);
   else
-    words = "The distance is not determined";
-  if (solution.heading_change_rad)
-    words += fmt::format(" and turned by {}", degree_words(solution.heading_change_rad));
-  else
-    words += "; its heading is not observable";
+    words = "Neither distance nor heading is determined";
   if (solution.closure_m)
     words += fmt::format("; it ended {} from the start", with_std(*solution.closure_m, "m"));
   return words + ".";
