@@ -63,7 +63,7 @@ class Encoder(CommandTest):
         low, high = found[0]["interval_95_s"]
         self.assertLess(low, 30)
         self.assertGreater(high, 30)
-        self.assertLess(high - low, 5)
+        self.assertLess(high - low, 1)
 
     def test_a_wrapping_count_is_followed(self):
         self.write("wheel.csv", wheel(wrap=4096))

@@ -176,7 +176,8 @@ void add_notes(const EncoderRecording& recording,
                     static_cast<int>(out.turns), static_cast<int>(out.dof)));
 }
 
-/// Fits, finds the missed counts, removes them from `fixes` and fits again, until there are none.
+/// Fits, finds the missed counts, removes them from `fixes` and fits again, until there are none;
+/// then moves them to where the fit without them has them.
 Result<EncoderRound> without_slips(const EncoderRecording& recording,
                                    const EncoderOptions& options,
                                    signal::AngleFixes& fixes,
@@ -198,6 +199,17 @@ Result<EncoderRound> without_slips(const EncoderRecording& recording,
     }
     signal::remove_slips(found, recording.step_rad, fixes);
     out.missed.insert(out.missed.end(), found.begin(), found.end());
+    round = one_round(recording, fixes, options);
+  }
+  for (int n = 0; n < most_rounds && round && !out.missed.empty(); ++n) {
+    std::vector<double> residual_rad = round->offsets.offset_rad;
+    for (std::size_t i = 0; i < residual_rad.size(); ++i)
+      residual_rad[i] -= round->offsets.fitted_rad[i];
+    if (!signal::relocate_slips(round->offsets.time_s, residual_rad, recording.step_rad,
+                                out.missed))
+      break;
+    fixes = recording.encoder;
+    signal::remove_slips(out.missed, recording.step_rad, fixes);
     round = one_round(recording, fixes, options);
   }
   std::ranges::sort(out.missed, {}, &signal::CountSlip::time_s);

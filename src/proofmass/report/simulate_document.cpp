@@ -243,7 +243,7 @@ Document describe(const MotorReport& report) {
   const Motion load = motion(report.result.truth);
   Document document = document_of(
       report,
-      fmt::format("Simulated drive, {} at {} Hz, seed {}: top speed {} rpm.",
+      fmt::format("Simulated motor, {} at {} Hz, seed {}: top speed {} rpm.",
                   duration_words(recording.duration_s()), compact(report.options.rate_hz, 6),
                   report.options.seed, significant(load.peak_rpm, 4)),
       motor_fields(report));

@@ -133,7 +133,6 @@ struct SlipCandidate {
 };
 
 constexpr std::size_t narrowest = 4, widest = 256;
-constexpr std::size_t blur = 5;  ///< bins
 
 /// The most significant step that is a whole number of counts. One that is none hides what overlaps
 /// with it, since windows beside it see any part of it.
@@ -162,7 +161,7 @@ SlipCandidate strongest(const std::vector<double>& values, double step_rad) {
 }
 
 /// The boundary within the window at which a step of this size leaves the least squares, and the
-/// range in which they are up to 4 variances more, and five bins to either side.
+/// range in which they are up to 4 variances more.
 CountSlip located(const SlipCandidate& found,
                   const std::vector<double>& values,
                   const std::vector<double>& times,
@@ -192,9 +191,8 @@ CountSlip located(const SlipCandidate& found,
     earliest = std::min(earliest, i);
     latest = i;
   }
-  // Errors within a turn, fitted while the step is still there, move the least by some bins.
-  slip.start_s = boundary_s(earliest - std::min(earliest, blur));
-  slip.end_s = boundary_s(latest + blur);
+  slip.start_s = boundary_s(earliest - std::min<std::size_t>(earliest, 1));
+  slip.end_s = boundary_s(latest + 1);
   return slip;
 }
 
@@ -327,6 +325,50 @@ std::vector<CountSlip> find_count_slips(View<double> time_s,
   }
   std::ranges::sort(out, {}, &CountSlip::time_s);
   return out;
+}
+
+bool relocate_slips(View<double> time_s,
+                    View<double> residual_rad,
+                    double step_rad,
+                    std::vector<CountSlip>& slips) {
+  PM_EXPECTS(time_s.size() == residual_rad.size());
+  constexpr std::size_t reach = 24;  // a turn and a half of sixteenths
+  std::vector<double> times, r;
+  for (std::size_t i = 0; i < residual_rad.size(); ++i) {
+    if (std::isnan(residual_rad[i])) continue;
+    times.push_back(time_s[i]);
+    r.push_back(residual_rad[i]);
+  }
+  if (r.size() < 2) return false;
+  const double variance = std::pow(scatter_of(r), 2);
+  bool any_moved = false;
+  for (CountSlip& slip : slips) {
+    const double size = slip.counts * step_rad;
+    const auto now =
+        static_cast<std::size_t>(std::ranges::upper_bound(times, slip.time_s) - times.begin());
+    const std::size_t first = std::max<std::size_t>(1, now - std::min(now, reach));
+    const std::size_t last = std::min(now + reach, r.size() - 1);
+    if (now < first || now > last) continue;
+    // Sum of squares with the boundary before each bin, less that with it where it is now.
+    std::vector<double> costs(last - first + 1, 0.0);
+    for (std::size_t j = now; j-- > first;)
+      costs[j - first] = costs[j + 1 - first] + size * (size - 2.0 * r[j]);
+    for (std::size_t j = now + 1; j <= last; ++j)
+      costs[j - first] = costs[j - 1 - first] + size * (size + 2.0 * r[j - 1]);
+    const auto least = std::ranges::min_element(costs);
+    const std::size_t to = first + static_cast<std::size_t>(least - costs.begin());
+    const auto alike = [&](double cost) { return cost <= *least + 4.0 * variance; };
+    const auto earliest = std::ranges::find_if(costs, alike) - costs.begin();
+    const auto after = std::find_if(costs.rbegin(), costs.rend(), alike) - costs.rbegin();
+    const std::size_t latest = last - static_cast<std::size_t>(after);
+    slip.time_s = 0.5 * (times[to - 1] + times[to]);
+    slip.start_s = times[first + static_cast<std::size_t>(earliest) - 1];
+    slip.end_s = times[latest];
+    for (std::size_t j = to; j < now; ++j) r[j] -= size;
+    for (std::size_t j = now; j < to; ++j) r[j] += size;
+    any_moved = any_moved || to != now;
+  }
+  return any_moved;
 }
 
 std::optional<int> detectable_counts(View<double> offset_rad, double step_rad) {

@@ -83,6 +83,16 @@ struct CountSlip {
                                                       View<double> offset_rad,
                                                       double step_rad);
 
+/// Moves slips that have been removed to the boundaries, within 24 bins, at which the residual
+/// leaves the least squares, and sets their intervals: the boundaries whose sum of squares is
+/// larger by up to 4 variances. A fit made while a step was still there bends to it and moves it by
+/// some bins. `residual_rad`: the offset less its fit, in bins, NaN where missing. Returns whether
+/// any moved.
+[[nodiscard]] bool relocate_slips(View<double> time_s,
+                                  View<double> residual_rad,
+                                  double step_rad,
+                                  std::vector<CountSlip>& slips);
+
 /// Smallest whole number of counts that find_count_slips() would detect in such data with a
 /// probability of one half, anywhere but near the ends; nullopt for too few bins.
 [[nodiscard]] std::optional<int> detectable_counts(View<double> offset_rad, double step_rad);
