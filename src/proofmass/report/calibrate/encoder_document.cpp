@@ -137,7 +137,7 @@ std::string conclusion(const EncoderReport& report) {
   const std::size_t slips = fit.missed.size();
   if (fit.step_rad > 0.0)
     text += slips == 0 ? std::string(" No missed counts.")
-                       : fmt::format(" Counts are missed at {}.", count_words(slips, "time"));
+                       : fmt::format(" Counts were missed {}.", count_words(slips, "time"));
   return text;
 }
 
@@ -190,7 +190,7 @@ std::vector<std::string> facts(const EncoderReport& report) {
                               fixed(rad_per_turn / fit.step_rad, 0)));
   if (fit.detectable_counts)
     out.push_back(
-        fmt::format("Fewer than {} missed at once would not be found.",
+        fmt::format("{} missed at once would be found with a probability of one half or more.",
                     count_words(static_cast<std::size_t>(*fit.detectable_counts), "count")));
   out.push_back(fmt::format("Speed {} to {} rpm.",
                             significant(fit.speed_min_radps / radps_per_rpm, 3),
