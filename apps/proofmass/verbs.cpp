@@ -10,6 +10,7 @@ Verb drift_verb();
 Verb drive_verb();
 Verb fleet_verb();
 Verb inspect_verb();
+Verb motor_verb();
 Verb noise_verb();
 Verb record_verb();
 Verb recover_verb();
@@ -24,10 +25,10 @@ Verb tune_verb();
 Verb wheel_verb();
 
 std::vector<Verb> all_verbs() {
-  return {inspect_verb(),   serve_verb(),   convert_verb(),  noise_verb(),  drift_verb(),
-          calibrate_verb(), tumble_verb(),  sensor_verb(),   wheel_verb(),  drive_verb(),
-          track_verb(),     tilt_verb(),    tune_verb(),     budget_verb(), fleet_verb(),
-          record_verb(),    recover_verb(), simulate_verb(), thesis_verb()};
+  return {inspect_verb(),   serve_verb(),  convert_verb(), noise_verb(),    drift_verb(),
+          calibrate_verb(), tumble_verb(), sensor_verb(),  wheel_verb(),    drive_verb(),
+          track_verb(),     tilt_verb(),   motor_verb(),   tune_verb(),     budget_verb(),
+          fleet_verb(),     record_verb(), recover_verb(), simulate_verb(), thesis_verb()};
 }
 
 }  // namespace proofmass::app

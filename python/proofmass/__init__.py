@@ -14,10 +14,10 @@ from ._recording import Recording, read
 from ._results import Missing, Node, Quantity, Result
 from ._run import ProofmassWarning
 from ._sensor import Sensor
-from ._verbs import Simulated, calibrate, drift, inspect, noise, simulate, tilt, track, tumble, tune, wheel
+from ._verbs import Simulated, calibrate, drift, inspect, motor, noise, simulate, tilt, track, tumble, tune, wheel
 
 __all__ = [
     "ArgumentError", "DataError", "Deviation", "Error", "Estimate", "FileError", "KalmanModel", "Missing", "Node",
     "ProofmassWarning", "Quantity", "Recording", "Result", "Sensor", "Simulated", "allan", "calibrate", "drift",
-    "fleet", "inspect", "live", "noise", "read", "simulate", "tilt", "track", "tumble", "tune", "wheel", "__version__",
+    "fleet", "inspect", "live", "motor", "noise", "read", "simulate", "tilt", "track", "tumble", "tune", "wheel", "__version__",
 ]  # fmt: skip

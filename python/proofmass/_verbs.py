@@ -687,6 +687,68 @@ def tilt(
 
 
 @with_common_options
+def motor(
+    x: Any,
+    /,
+    *,
+    rate_hz: Optional[float] = None,
+    unit: Optional[str] = None,
+    voltage: Optional[str] = None,
+    current: Optional[str] = None,
+    current_unit: Optional[str] = None,
+    no_current: bool = False,
+    angle: Optional[str] = None,
+    angle_unit: Optional[str] = None,
+    channel: Union[str, Sequence[str], None] = None,
+    variable: Union[str, Sequence[str], None] = None,
+    time: Optional[str] = None,
+    from_s: Optional[float] = None,
+    to_s: Optional[float] = None,
+    resample: Optional[float] = None,
+    resample_method: Optional[str] = None,
+    skew: Optional[float] = None,
+    sensor: Union[Sensor, Path, Sequence[Union[Sensor, Path]], None] = None,
+    supply: Optional[float] = None,
+    gravity: Optional[float] = None,
+    latitude: Optional[float] = None,
+    height: Optional[float] = None,
+    progress: Progress = None,
+) -> Result:
+    """Friction, inertia and backlash of a geared DC motor, from voltage, current and its wheel.
+
+    Parameters
+    ----------
+    x : path, Recording, DataFrame, dict of arrays, or array_like (n,) or (n, channels)
+        A recording.
+    {rate_hz, unit}
+    voltage : str, optional
+        Column with the motor's voltage (default: the one named voltage).
+    current : str, optional
+        Column with its current (default: the one named current, if any).
+    current_unit : str, optional
+        Unit of the current: A (default) or mA.
+    no_current : bool
+        Do not use the current (not with current).
+    angle : str, optional
+        Column with the angle of the load, unwrapped, as an encoder's, instead of accelerometers.
+    angle_unit : str, optional
+        Unit of that column if its heading has none: rad (default) or deg.
+    {channel to supply}
+    {gravity, latitude, height}
+    {progress}
+
+    Examples
+    --------
+    >>> import proofmass as pm
+    >>> drive = pm.simulate(procedure="motor", seed=1)
+    >>> found = {p.name: p for p in pm.motor(drive.recording).parameters}
+    >>> round(found["backlash"].value, 3)
+    0.012
+    """
+    return run("motor", x, options_of(locals()), progress, "motor.csv")
+
+
+@with_common_options
 def tune(
     x: Any,
     /,
@@ -823,7 +885,7 @@ def simulate(
         Resolution of the converter.
     procedure : str, optional
         Instead of the rig, a calibration (tumble, four-position, six-position or multi-position), a
-        slide along a line, or motor: the drive of the rig.
+        slide along a line, or motor: the rig's drive.
     session : int, optional
         Same sensor and table, other noise and placement (needs procedure).
     positions : int, optional

@@ -20,7 +20,7 @@ OF_THE_COMMAND = {
 
 
 @pytest.mark.parametrize(
-    "verb", ["inspect", "noise", "drift", "calibrate", "tumble", "wheel", "track", "tilt", "tune", "simulate"]
+    "verb", ["inspect", "noise", "drift", "calibrate", "tumble", "wheel", "track", "tilt", "motor", "tune", "simulate"]
 )
 def test_options_are_the_flags(verb):
     text = "".join(

@@ -46,7 +46,7 @@ void run_motor(const SimulateCommand& command) {
   if (flags.output.empty())
     throw Failure(usage, "simulate: no --output: say where to, -o drive.csv");
   const simulate::MotorResult result = need(simulate::simulate_motor(options), Stage::computing);
-  report::MotorReport report{.output = flags.output, .options = options, .result = result};
+  report::MotorRigReport report{.output = flags.output, .options = options, .result = result};
   write_series(result.recording, flags);
   if (flags.output != "-") {
     report.truth = truth_name(flags.output);

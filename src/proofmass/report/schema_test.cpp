@@ -14,6 +14,7 @@
 #include "proofmass/report/drift/fake.hpp"
 #include "proofmass/report/inspect_report.hpp"
 #include "proofmass/report/model_equation_report.hpp"
+#include "proofmass/report/motor/report.hpp"
 #include "proofmass/report/noise/fake.hpp"
 #include "proofmass/report/recover_report.hpp"
 #include "proofmass/report/rotation_report.hpp"
@@ -163,6 +164,23 @@ TEST(Schemas, Tune) {
       "Noise figures of a filter by maximum likelihood, its consistency, and the study of "
       "its gain.",
       {describe(found), describe(limited)});
+}
+
+TEST(Schemas, Motor) {
+  MotorReport known;
+  known.solution.has_current = true;
+  known.solution.parameters = {{.name = "inertia",
+                                .unit = "kg*m^2",
+                                .meaning = "",
+                                .value = Uncertain{0.6, 0.01},
+                                .interval_95 = {{0.58, 0.62}}}};
+  known.solution.friction = {{.speed_radps = 1.0, .torque = 3.0, .std = 0.1}};
+  MotorReport open = known;
+  open.solution.has_current = false;
+  open.solution.parameters = {
+      {.name = "backlash", .unit = "rad", .meaning = "", .reason = "no reversal"}};
+  expect_schema("Friction, inertia and backlash of a drive, at the load's shaft.",
+                {describe(known), describe(open)});
 }
 
 TEST(Schemas, Budget) {

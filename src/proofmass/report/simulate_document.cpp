@@ -172,7 +172,7 @@ Fields motor_truth(const simulate::GearMotorParameters& p) {
       field::number("backlash", p.backlash_rad, {.meaning = "rad"})};
 }
 
-Fields motor_fields(const MotorReport& report) {
+Fields motor_fields(const MotorRigReport& report) {
   Fields fields{field::choice("procedure", "motor", {"motor"})};
   append(fields, file_fields(report));
   fields.push_back(field::count("seed", report.options.seed));
@@ -238,7 +238,7 @@ Document describe(const ProcedureReport& report) {
   return document;
 }
 
-Document describe(const MotorReport& report) {
+Document describe(const MotorRigReport& report) {
   const Recording& recording = report.result.recording;
   const Motion load = motion(report.result.truth);
   Document document = document_of(

@@ -30,7 +30,7 @@ struct ProcedureReport {
 /// The same for a calibration procedure or a slide, with the figures of the true sensor.
 [[nodiscard]] Document describe(const ProcedureReport& report);
 
-struct MotorReport {
+struct MotorRigReport {
   std::vector<std::string> inputs{};
   std::string output, truth{};  ///< files written
   const simulate::MotorOptions& options;
@@ -38,6 +38,6 @@ struct MotorReport {
 };
 
 /// The same for the drive, with its true figures.
-[[nodiscard]] Document describe(const MotorReport& report);
+[[nodiscard]] Document describe(const MotorRigReport& report);
 
 }  // namespace proofmass::report

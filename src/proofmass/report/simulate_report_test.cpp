@@ -74,7 +74,7 @@ TEST(Schemas, Simulate) {
        {describe(ProcedureReport{.output = "a.csv", .options = tumble, .result = on_table}),
         describe(ProcedureReport{.output = "a.csv", .options = hand, .result = by_hand}),
         describe(ProcedureReport{.output = "a.csv", .options = slide, .result = along})},
-       {describe(MotorReport{.output = "a.csv", .options = driven, .result = drive})}});
+       {describe(MotorRigReport{.output = "a.csv", .options = driven, .result = drive})}});
 }
 
 }  // namespace

@@ -1,0 +1,145 @@
+#include "proofmass/estimate/motor/electrical.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proofmass/estimate/motor/angle_errors.hpp"
+
+namespace proofmass::estimate::motor {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Order of the unknowns after those of Electrical.
+constexpr Index half_backlash = electrical_count, first_error = half_backlash + 1;
+
+double largest(const std::vector<double>& values) {
+  double out = 0.0;
+  for (const double v : values) out = std::max(out, std::abs(v));
+  return out;
+}
+
+// Brushes drop their voltage with the sign of the current, smoothly through zero.
+std::vector<double> brush_sign(const std::vector<double>& current_a) {
+  const double scale = 0.02 * largest(current_a);
+  std::vector<double> out;
+  for (const double i : current_a) out.push_back(scale > 0.0 ? std::tanh(i / scale) : 0.0);
+  return out;
+}
+
+// What the unknowns of Electrical multiply in the motor's angle and speed.
+struct Terms {
+  MatrixXd angle, speed;
+};
+
+Terms terms_of(const Series& series) {
+  const std::vector<double> sign = brush_sign(series.current_a);
+  const std::vector<double> voltage = integral(series.voltage_v, series.step_s),
+                            current = integral(series.current_a, series.step_s),
+                            signs = integral(sign, series.step_s),
+                            change = slopes(series.current_a, series.step_s, 3);
+  const auto n = static_cast<Index>(series.size());
+  Terms out{MatrixXd(n, electrical_count), MatrixXd(n, electrical_count)};
+  for (Index k = 0; k < n; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    out.angle.row(k) << voltage[at], -current[at], -series.current_a[at], -signs[at];
+    out.speed.row(k) << series.voltage_v[at], -series.current_a[at], -change[at], -sign[at];
+  }
+  return out;
+}
+
+// Inductance and brush drop hardly show at some 100 Hz and are nuisances: small motors have L/R of
+// 1 to 15 ms, and drops of up to some volts at 24 V. A drop of L i and half the backlash change
+// with the direction alike, so the prior of L matters.
+void set_priors(const Series& series,
+                const Motion& motion,
+                double resistance_per_constant,
+                LevelRegression& regression) {
+  constexpr double anything = 1e3, inductance_s = 0.005, drop_share = 0.02;
+  const double top_v = largest(series.voltage_v), top_a = largest(series.current_a);
+  const double constant = motion.top_radps() / top_v;  // at least 1/K
+  VectorXd& std = regression.prior_std;
+  std(per_constant) = anything * constant;
+  std(resistance) = anything * constant * top_v / top_a;
+  regression.prior_mean(inductance) = inductance_s * resistance_per_constant;
+  std(inductance) = std::max(inductance_s * resistance_per_constant, 1e-9);
+  std(brush_drop) = drop_share * top_v * constant;
+  std(half_backlash) = 0.05;
+}
+
+}  // namespace
+
+double resistance_per_constant(const Series& series, const Motion& motion) {
+  double ii = 0.0, iw = 0.0, ww = 0.0, iu = 0.0, wu = 0.0;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    if (motion.contact[k] == 0) continue;
+    const double i = series.current_a[k], w = motion.speed_radps[k], u = series.voltage_v[k];
+    ii += i * i;
+    iw += i * w;
+    ww += w * w;
+    iu += i * u;
+    wu += w * u;
+  }
+  const double resistance = iu * ww - wu * iw, constant = wu * ii - iu * iw;
+  return constant > 0.0 ? std::max(resistance / constant, 0.0) : 0.0;
+}
+
+ElectricalFit fit_electrical(const Series& series,
+                             const Motion& motion,
+                             double resistance_per_constant) {
+  const AngleErrors errors(series, motion);
+  const Index unknowns = first_error + errors.count();
+  const Terms terms = terms_of(series);
+  const auto used = static_cast<Index>(motion.contact.size()) -
+                    std::ranges::count(motion.contact, std::int8_t{0});
+  LevelRegression regression{.columns = MatrixXd(unknowns + 1, used),
+                             .starts = {0},
+                             .prior_std = VectorXd::Zero(unknowns),
+                             .prior_mean = VectorXd::Zero(unknowns)};
+  set_priors(series, motion, resistance_per_constant, regression);
+  errors.set_priors(regression.prior_std.tail(errors.count()));
+  Index row = 0;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    if (motion.contact[k] == 0) continue;
+    auto column = regression.columns.col(row++);
+    column.head(electrical_count) = terms.angle.row(static_cast<Index>(k)).transpose();
+    column(half_backlash) = -motion.contact[k];
+    errors.write(k, column.segment(first_error, errors.count()));
+    column(unknowns) = series.angle_rad[k];
+    regression.time_s.push_back(series.time_s(k));
+  }
+  const LevelFit found = fit(regression);
+  ElectricalFit out{
+      .value = found.value.head(electrical_count),
+      .covariance = found.covariance.topLeftCorner(electrical_count, electrical_count),
+      .half_backlash_rad = found.value(half_backlash),
+      .half_backlash_std_rad = std::sqrt(found.covariance(half_backlash, half_backlash)),
+      .angle_noise_rad = found.white_std,
+      .correlation = found.correlation,
+      .speed_terms = terms.speed};
+  const VectorXd angle = terms.angle * out.value;
+  double offset = 0.0;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    out.load_angle_rad.push_back(angle(static_cast<Index>(k)) -
+                                 motion.contact[k] * out.half_backlash_rad);
+    if (motion.contact[k] != 0)
+      offset += (series.angle_rad[k] - out.load_angle_rad[k]) / static_cast<double>(used);
+  }
+  for (double& load : out.load_angle_rad) load += offset;
+  const std::vector<double> level = smoothed_level(regression, found);
+  for (std::size_t k = 0, last = 0; k < series.size(); ++k) {
+    while (last + 1 < level.size() && regression.time_s[last + 1] <= series.time_s(k)) ++last;
+    const std::size_t next = std::min(last + 1, level.size() - 1);
+    const double span_s = regression.time_s[next] - regression.time_s[last];
+    const double share =
+        span_s > 0.0 ? std::clamp((series.time_s(k) - regression.time_s[last]) / span_s, 0.0, 1.0)
+                     : 0.0;
+    out.motor_angle_rad.push_back(angle(static_cast<Index>(k)) +
+                                  std::lerp(level[last], level[next], share));
+  }
+  return out;
+}
+
+}  // namespace proofmass::estimate::motor

@@ -1,0 +1,170 @@
+#include "proofmass/estimate/motor/series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "proofmass/core/statistics.hpp"
+
+namespace proofmass::estimate::motor {
+namespace {
+
+constexpr double window_s = 0.12;     // of the cubic through the load's angle
+constexpr double settle_s = 0.05;     // after the load has begun to move, until the flank bears
+constexpr double least_share = 0.02;  // friction is known above this share of the top speed,
+constexpr double noise_factor = 4.0;  // and above this many standard deviations
+
+// Σ j² and the other even moments over −h … h.
+struct Moments246 {
+  double two = 0.0, four = 0.0, six = 0.0;
+  explicit Moments246(std::size_t half) {
+    for (std::size_t j = 1; j <= half; ++j) {
+      const double square = static_cast<double>(j * j);
+      two += 2.0 * square;
+      four += 2.0 * square * square;
+      six += 2.0 * square * square * square;
+    }
+  }
+  // Weight of y_j in the slope at the middle.
+  [[nodiscard]] double weight(double j) const {
+    return (six * j - four * j * j * j) / (two * six - four * four);
+  }
+};
+
+double slope_at(const std::vector<double>& y, std::size_t k, std::size_t half) {
+  if (half < 2) {
+    const std::size_t next = std::min(k + 1, y.size() - 1), last = k > 0 ? k - 1 : 0;
+    return (y[next] - y[last]) / static_cast<double>(next - last);
+  }
+  const Moments246 moments(half);
+  double slope = 0.0;
+  for (std::size_t j = 1; j <= half; ++j)
+    slope += moments.weight(static_cast<double>(j)) * (y[k + j] - y[k - j]);
+  return slope;
+}
+
+std::size_t samples_in(double duration_s, double step_s) {
+  return static_cast<std::size_t>(std::ceil(duration_s / step_s));
+}
+
+std::int8_t direction(double speed_radps, double least_radps) {
+  if (!(std::abs(speed_radps) > least_radps)) return 0;
+  return speed_radps > 0.0 ? std::int8_t{1} : std::int8_t{-1};
+}
+
+}  // namespace
+
+bool Motion::has_both_flanks() const {
+  return std::ranges::count(contact, std::int8_t{1}) > 0 &&
+         std::ranges::count(contact, std::int8_t{-1}) > 0;
+}
+
+std::size_t Motion::reversals() const {
+  std::size_t count = 0;
+  int last = 0;
+  for (const std::int8_t flank : contact) {
+    if (flank == 0) continue;
+    if (flank == -last) ++count;
+    last = flank;
+  }
+  return count;
+}
+
+double Motion::top_radps() const {
+  // Impacts of the gear are far outside.
+  constexpr double share = 0.99;
+  std::vector<double> sizes;
+  for (const double w : speed_radps) sizes.push_back(std::abs(w));
+  return quantile(sizes, share).value_or(0.0);
+}
+
+double sample_noise(const std::vector<double>& values) {
+  std::vector<double> thirds;
+  for (std::size_t k = 3; k < values.size(); ++k)
+    thirds.push_back(values[k] - 3.0 * values[k - 1] + 3.0 * values[k - 2] - values[k - 3]);
+  return robust_std(thirds).value_or(0.0) / std::sqrt(20.0);
+}
+
+std::vector<double> slopes(const std::vector<double>& y, double step_s, std::size_t half) {
+  std::vector<double> out(y.size(), 0.0);
+  if (y.size() < 2) return out;
+  for (std::size_t k = 0; k < y.size(); ++k)
+    out[k] = slope_at(y, k, std::min({half, k, y.size() - 1 - k})) / step_s;
+  return out;
+}
+
+double slope_noise(std::size_t half) {
+  const Moments246 moments(half);
+  double squares = 0.0;
+  for (std::size_t j = 1; j <= half; ++j)
+    squares += 2.0 * std::pow(moments.weight(static_cast<double>(j)), 2);
+  return std::sqrt(squares);
+}
+
+std::vector<double> integral(const std::vector<double>& y, double step_s) {
+  std::vector<double> out(y.size(), 0.0);
+  for (std::size_t k = 1; k < y.size(); ++k) out[k] = out[k - 1] + 0.5 * step_s * (y[k - 1] + y[k]);
+  return out;
+}
+
+void shorten_runs(std::vector<std::int8_t>& contact, std::size_t margin) {
+  const std::size_t n = contact.size();
+  for (std::size_t first = 0; first < n;) {
+    std::size_t last = first + 1;
+    while (last < n && contact[last] == contact[first]) ++last;
+    for (std::size_t k = first; k < last; ++k)
+      if (k < first + margin || k + margin >= last) contact[k] = 0;
+    first = last;
+  }
+}
+
+std::size_t half_window(double window_s, double step_s) {
+  return std::max<std::size_t>(3, static_cast<std::size_t>(std::lround(0.5 * window_s / step_s)));
+}
+
+std::vector<double> smoothed(const std::vector<double>& y, double step_s, double window_s) {
+  return slopes(integral(y, step_s), step_s, half_window(window_s, step_s));
+}
+
+Motion motion_of_load(const Series& series) {
+  const std::size_t half = half_window(window_s, series.step_s);
+  Motion motion{.speed_radps = slopes(series.angle_rad, series.step_s, half),
+                .angle_rad = smoothed(series.angle_rad, series.step_s, window_s),
+                .half_window = half};
+  const double std_radps = slope_noise(half) * sample_noise(series.angle_rad) / series.step_s;
+  motion.rest_radps = std::max(noise_factor * std_radps, least_share * motion.top_radps());
+  // The flank on which the motor drives the load, once the load has moved one way for settle_s.
+  for (const double w : motion.speed_radps)
+    motion.contact.push_back(direction(w, motion.rest_radps));
+  shorten_runs(motion.contact, std::max(samples_in(settle_s, series.step_s), half + 1));
+  return motion;
+}
+
+Motion motion_of_motor(const Series& series,
+                       const std::vector<double>& motor_rad,
+                       std::vector<double> load_rad,
+                       std::vector<double> speed_radps,
+                       double speed_std_radps,
+                       double gap_rad,
+                       std::size_t half) {
+  Motion motion{
+      .speed_radps = std::move(speed_radps), .angle_rad = std::move(load_rad), .half_window = half};
+  motion.rest_radps = std::max(noise_factor * speed_std_radps, least_share * motion.top_radps());
+  motion.contact.assign(series.size(), 0);
+  const std::size_t margin = samples_in(settle_s, series.step_s);
+  double pushed_rad = motor_rad.front();
+  std::size_t bearing = 0;  // samples since the flank was reached
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const double pushed =
+        std::clamp(pushed_rad, motor_rad[k] - 0.5 * gap_rad, motor_rad[k] + 0.5 * gap_rad);
+    const bool moves = std::abs(motion.speed_radps[k]) > motion.rest_radps;
+    const bool bears = (pushed - pushed_rad) * motion.speed_radps[k] > 0.0;
+    pushed_rad = pushed;
+    bearing = moves && bears ? bearing + 1 : 0;
+    if (bearing > margin) motion.contact[k] = direction(motion.speed_radps[k], motion.rest_radps);
+  }
+  shorten_runs(motion.contact, half + 1);
+  return motion;
+}
+
+}  // namespace proofmass::estimate::motor
