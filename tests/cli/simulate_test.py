@@ -93,6 +93,22 @@ class SimulateProcedure(CommandTest):
         for flags in (["--strokes", "3"], ["--rpm", "11"], ["--positions", "4"], ["--print-config"]):
             self.expect_failure(USAGE, "simulate", "--procedure", "motor", *flags, "-o", "drive.csv")
 
+    def test_a_servo_compares_four_kinds_of_feedback(self):
+        document = self.document("simulate", "--procedure", "servo", "--seed", "2", "-o", "loops.csv")
+        loops = {(one["feedback"], one["friction_compensated"]): one for one in document["loops"]}
+        self.assertEqual(len(loops), 8)
+        live, gravity = loops["live_estimate", True]["speed"], loops["atan2", True]["speed"]
+        self.assertLess(live["settling_s"], 2.0)
+        self.assertLess(live["ripple_radps"], 0.3 * gravity["ripple_radps"])
+        self.assertIsNone(loops["double_integration", True]["speed"]["settling_s"])
+        self.assertEqual(document["delay_s"], 0.01)
+        traces = self.columns("loops.csv")
+        # The wheel follows the reference of the angle with the encoder.
+        off = [a - b for a, b in zip(traces["angle_encoder (rad)"], traces["angle_reference (rad)"])]
+        self.assertLess(max(abs(x) for x in off[-200:]), 0.01)
+        for flags in (["--strokes", "3"], ["--duration", "9"], ["--print-config"]):
+            self.expect_failure(USAGE, "simulate", "--procedure", "servo", *flags)
+
     def test_a_slide_knows_where_it_was(self):
         document = self.document("simulate", "--procedure", "slide", "--strokes", "3", "--length", "0.5", "--elevation", "30",
                                  "--gyro", "--gravity-removed", "-o", "slide.csv")

@@ -14,8 +14,8 @@ from command import BAD_INPUT, PROGRAM, USAGE, CommandTest, parse_json
 G = 9.80665
 IDS = ["table 2.1", "figure 4.3", "figure 4.5", "table 4.1", "figure 4.6", "figure 5.2", "figure 5.3", "figure 5.4", "figure 5.5",
        "figure 5.6", "table 5.1", "figure 5.7", "figure 5.8", "figure 5.9", "figure 5.10", "figure 5.12", "figure 5.13",
-       "figure 5.14", "figure 5.15", "figure 5.16", "figure 5.17", "figure 5.18", "figure 5.19", "section 6.1", "table A.1",
-       "section A.2"]
+       "figure 5.14", "figure 5.15", "figure 5.16", "figure 5.17", "figure 5.18", "figure 5.19", "section 6.1", "section 6.2",
+       "table A.1", "section A.2"]
 QUICK = ("--runs", "2", "--static-hours", "0.2")
 
 

@@ -16,7 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md"]
 CHAPTERS = "noise drift calibration estimation wheel acquisition fleet formats python".split()
-METHODS = """wheel drive track tilt motor estimation models smoothers steady_state tuning consistency noise drift budget calibration gyroscope encoder
+METHODS = """wheel drive track tilt motor servo estimation models smoothers steady_state tuning consistency noise drift budget calibration gyroscope encoder
   tumble rotation_test model_equation fit record live guided iio daqmx framing phones""".split()
 LISTED = {".cpp": "cpp", ".hpp": "cpp", ".json": "json", ".toml": "toml", ".py": "python", ".sh": "bash"}
 FOLDERS = {"docs/schema": "Schemas of the JSON documents", "examples": "Programs that use the library"}

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <fmt/format.h>
 
 #include "cli/console.hpp"
@@ -8,35 +9,40 @@
 #include "simulate/modes.hpp"
 
 namespace proofmass::app {
-namespace {
 
-void refuse_other_flags(const SimulateCommand& command) {
-  const char* flag = !command.rig.empty()       ? "a description"
-                     : command.rpm              ? "--rpm"
-                     : command.datasheet_errors ? "--datasheet-errors"
-                     : command.positions        ? "--positions"
-                     : command.dwell_s          ? "--dwell"
-                     : command.supply_v         ? "--supply"
-                     : command.session          ? "--session"
-                     : command.strokes          ? "--strokes"
-                     : command.repetitions      ? "--repetitions"
-                     : command.length_m         ? "--length"
-                     : command.stroke_s         ? "--stroke-time"
-                     : command.elevation_deg    ? "--elevation"
-                     : command.gravity_removed  ? "--gravity-removed"
-                     : command.gyro             ? "--gyro"
-                     : command.print_config     ? "--print-config"
-                     : !command.signal.empty()  ? "--signal"
-                                                : nullptr;
+void refuse_other_flags(const SimulateCommand& command,
+                        std::initializer_list<std::string_view> also) {
+  const auto given = [&](std::string_view name, const auto& value) {
+    return value && std::ranges::find(also, name) != also.end();
+  };
+  const char* flag = !command.rig.empty()                       ? "a description"
+                     : command.rpm                              ? "--rpm"
+                     : command.datasheet_errors                 ? "--datasheet-errors"
+                     : command.positions                        ? "--positions"
+                     : command.dwell_s                          ? "--dwell"
+                     : command.supply_v                         ? "--supply"
+                     : command.session                          ? "--session"
+                     : command.strokes                          ? "--strokes"
+                     : command.repetitions                      ? "--repetitions"
+                     : command.length_m                         ? "--length"
+                     : command.stroke_s                         ? "--stroke-time"
+                     : command.elevation_deg                    ? "--elevation"
+                     : command.gravity_removed                  ? "--gravity-removed"
+                     : command.gyro                             ? "--gyro"
+                     : command.print_config                     ? "--print-config"
+                     : !command.signal.empty()                  ? "--signal"
+                     : given("--duration", command.duration_s)  ? "--duration"
+                     : given("--gravity", command.gravity_mps2) ? "--gravity"
+                     : given("--adc-bits", command.adc_bits)    ? "--adc-bits"
+                                                                : nullptr;
   if (flag != nullptr)
-    throw Failure(usage, fmt::format("{} is not for --procedure motor: leave it out", flag));
+    throw Failure(
+        usage, fmt::format("{} is not for --procedure {}: leave it out", flag, command.procedure));
 }
-
-}  // namespace
 
 void run_motor(const SimulateCommand& command) {
   const OutputFlags& flags = command.output;
-  refuse_other_flags(command);
+  refuse_other_flags(command, {});
   simulate::MotorOptions options;
   if (command.seed) options.seed = *command.seed;
   if (command.rate_hz) options.rate_hz = *command.rate_hz;

@@ -16,12 +16,13 @@ namespace proofmass::app {
 namespace {
 
 void add_procedure_flags(CLI::App& verb, SimulateCommand& command) {
-  CLI::Option* procedure =
-      verb.add_option("--procedure", command.procedure,
-                      "instead of the rig: tumble, four-position, six-position, multi-position, "
-                      "slide (motion along a line), or motor (the rig's drive)");
+  CLI::Option* procedure = verb.add_option(
+      "--procedure", command.procedure,
+      "instead of the rig: tumble, four-position, six-position, multi-position, "
+      "slide (motion along a line), motor (the rig's drive), or servo (the drive in "
+      "closed loops)");
   procedure->type_name("NAME")->check(CLI::IsMember(
-      {"tumble", "four-position", "six-position", "multi-position", "slide", "motor"}));
+      {"tumble", "four-position", "six-position", "multi-position", "slide", "motor", "servo"}));
   const auto add = [&](const char* name, auto& into, const char* type, const char* help) {
     return verb.add_option(name, into, help)->type_name(type)->needs(procedure)->group("Procedure");
   };
@@ -79,7 +80,8 @@ void add_simulate_flags(CLI::App& verb, SimulateCommand& command) {
       "Examples:\n  proofmass simulate --rpm 15 --seed 7 -o rig.csv\n"
       "  proofmass simulate --procedure multi-position -o poses.csv\n"
       "  proofmass simulate --procedure slide --length 0.5 -o slide.csv\n"
-      "  proofmass simulate --procedure motor -o drive.csv");
+      "  proofmass simulate --procedure motor -o drive.csv\n"
+      "  proofmass simulate --procedure servo");
 }
 
 void set_speed(const SimulateCommand& command, std::vector<simulate::SpeedSegment>& profile) {
@@ -128,6 +130,7 @@ std::string truth_name(const std::string& file) {
 
 void run_simulate(const SimulateCommand& command) {
   if (command.procedure == "motor") return run_motor(command);
+  if (command.procedure == "servo") return run_servo(command);
   if (!command.procedure.empty()) return run_procedure(command);
   const OutputFlags& flags = command.output;
   const simulate::RigOptions options = rig_options(command);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "proofmass/report/schema_test_support.hpp"
+#include "proofmass/report/servo_report.hpp"
 
 namespace proofmass::report::simulate_report_test {
 namespace {
@@ -68,13 +69,19 @@ TEST(Schemas, Simulate) {
   simulate::MotorOptions driven;
   driven.duration_s = 0.1;
   const simulate::MotorResult drive = simulate::simulate_motor(driven).value();
+  servo::ServoStudy loops{};
+  loops.worst = {{.feedback = servo::Feedback::live_estimate, .compensated = true},
+                 {.feedback = servo::Feedback::double_integration, .compensated = true},
+                 {.feedback = servo::Feedback::atan2, .compensated = true}};
+  loops.worst.front().speed_settling_s = loops.worst.front().position_settling_s = 0.6;
   expect_schema_of_kinds(
       "Simulated recording and its truth: of the rig, or of a procedure with --procedure.",
       {{describe(SimulateReport{{}, "a.csv", "", rig, turns})},
        {describe(ProcedureReport{.output = "a.csv", .options = tumble, .result = on_table}),
         describe(ProcedureReport{.output = "a.csv", .options = hand, .result = by_hand}),
         describe(ProcedureReport{.output = "a.csv", .options = slide, .result = along})},
-       {describe(MotorRigReport{.output = "a.csv", .options = driven, .result = drive})}});
+       {describe(MotorRigReport{.output = "a.csv", .options = driven, .result = drive})},
+       {describe(ServoReport{.output = "a.csv", .study = loops})}});
 }
 
 }  // namespace

@@ -10,17 +10,18 @@
 #include "proofmass/thesis/budget_items.hpp"
 #include "proofmass/thesis/gain_items.hpp"
 #include "proofmass/thesis/motor_items.hpp"
+#include "proofmass/thesis/servo_items.hpp"
 
 namespace proofmass::thesis {
 namespace {
 
 // In the order in which the thesis has them.
-constexpr std::array<std::string_view, 26> order{
+constexpr std::array<std::string_view, 27> order{
     "table 2.1",   "figure 4.3",  "figure 4.5",  "table 4.1",   "figure 4.6",  "figure 5.2",
     "figure 5.3",  "figure 5.4",  "figure 5.5",  "figure 5.6",  "table 5.1",   "figure 5.7",
     "figure 5.8",  "figure 5.9",  "figure 5.10", "figure 5.12", "figure 5.13", "figure 5.14",
     "figure 5.15", "figure 5.16", "figure 5.17", "figure 5.18", "figure 5.19", "section 6.1",
-    "table A.1",   "section A.2"};
+    "section 6.2", "table A.1",   "section A.2"};
 
 std::size_t place_of(const Item& item) {
   return static_cast<std::size_t>(std::ranges::find(order, item.id) - order.begin());
@@ -62,7 +63,8 @@ Result<Programme> run_programme(const OwnRecordings& own, const ProgrammeOptions
       [&](const Progress&) { return Items(gain_items(options.seed)); },
       [&](const Progress&) { return turned_items(own, options); },
       [&](const Progress&) { return Items(budget_items()); },
-      [&](const Progress&) { return Items(motor_items()); }};
+      [&](const Progress&) { return Items(motor_items()); },
+      [&](const Progress& report_progress) { return servo_items(options.seed, report_progress); }};
   std::vector<Items> parts(work.size(), std::vector<Item>{});
   in_parallel(work.size(), options.progress, [&](std::size_t k, const Progress& report_progress) {
     parts[k] = work[k](report_progress);
