@@ -1,6 +1,8 @@
 #include "proofmass/io/mcap/salvage.hpp"
 
+#include <fstream>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <random>
 
 #include "proofmass/io/mcap/recording.hpp"
@@ -102,6 +104,20 @@ TEST(McapSalvage, TakesMessagesOutsideOfChunksUpToTheDamage) {
   ASSERT_TRUE(saved.recovery);
   EXPECT_EQ(saved.recovery->messages, 50u);
   EXPECT_EQ(saved.recovery->bytes_lost, file.size() - good);
+}
+
+// A whole chunk within what was skipped: the walk goes back, and its bytes are not lost twice.
+TEST(McapSalvage, CountsALostByteOnce) {
+  std::ifstream corpus(
+      std::string(PROOFMASS_SOURCE_DIR) + "/fuzz/corpus/recover/chunk_within_lost_bytes",
+      std::ios::binary);
+  const std::string file =
+      mcap_front().substr(0, 8) + std::string(std::istreambuf_iterator<char>(corpus), {});
+  ASSERT_GT(file.size(), 1000u);
+  const Saved saved = salvaged(file);
+  ASSERT_TRUE(saved.recovery);
+  EXPECT_EQ(saved.recovery->messages, 1u);
+  EXPECT_LT(saved.recovery->bytes_lost, file.size());
 }
 
 TEST(McapSalvage, EndsItsSearchInBytesMadeForIt) {

@@ -72,6 +72,7 @@ class McapWalk {
   [[nodiscard]] Result<std::uint64_t> lose_chunk(const McapChunkHead& head,
                                                  std::uint64_t end,
                                                  const std::string& why);
+  void skip(std::uint64_t from, std::uint64_t to);
   void note(Severity severity, std::string text);
 
   FileWindow window_;
@@ -84,6 +85,7 @@ class McapWalk {
   std::uint32_t data_crc_ = 0;
   bool ended_ = false;
   std::uint64_t lost_bytes_ = 0;
+  std::uint64_t skipped_to_ = 0;   ///< end of the last bytes counted as skipped
   std::uint64_t search_from_ = 8;  ///< end of the data known to be intact
   std::uint64_t searched_ = 0;     ///< bytes searched without result
   McapWalkCounts counts_;

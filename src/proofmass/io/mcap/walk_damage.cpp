@@ -14,6 +14,16 @@ std::string seconds(std::uint64_t ns) {
 
 }  // namespace
 
+/// Counts bytes as lost, each once: where a whole chunk begins within what was skipped, the walk
+/// goes back.
+void McapWalk::skip(std::uint64_t from, std::uint64_t to) {
+  if (to < skipped_to_)
+    counts_.skipped -= std::min(counts_.skipped, skipped_to_ - to);
+  else
+    counts_.skipped += to - std::clamp(skipped_to_, from, to);
+  skipped_to_ = to;
+}
+
 /// Continues after damage, if possible; there is no record yet.
 Result<bool> McapWalk::broken_off(const std::string& why) {
   const auto listed = std::ranges::upper_bound(hints_.chunk_starts, position_);
@@ -28,7 +38,7 @@ Result<bool> McapWalk::broken_off(const std::string& why) {
   if (next >= window_.size()) {
     note(Severity::bad,
          fmt::format("breaks off at byte {}, {}: what was read before is kept", position_, why));
-    counts_.skipped += window_.size() - position_;
+    skip(position_, window_.size());
     ended_ = true;
     return false;
   }
@@ -37,7 +47,7 @@ Result<bool> McapWalk::broken_off(const std::string& why) {
       fmt::format("is damaged at byte {}, {}: skipped up to byte {}, where {}", position_, why,
                   next, hints_.search ? "a whole chunk begins" : "the summary has the next chunk"));
   lost_bytes_ += next - position_;
-  counts_.skipped += next - position_;
+  skip(position_, next);
   position_ = next;
   return false;
 }
@@ -122,7 +132,7 @@ Result<std::uint64_t> McapWalk::lose_chunk(const McapChunkHead& head,
     if (!next) return next.error();
     end = *next;
   }
-  counts_.skipped += end - chunk_at_;
+  skip(chunk_at_, end);
   return end;
 }
 
