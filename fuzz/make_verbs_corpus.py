@@ -5,7 +5,7 @@ import random
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent / "corpus/verbs"
-COMMANDS = 27
+COMMANDS = 29
 G, ONE = 247, 128 # the byte of 9.8 m/s², that of scale 1
 
 

@@ -236,7 +236,7 @@ class Help(CommandTest):
 
     def test_help_fits_a_terminal_of_80_columns(self):
         verbs = re.findall(r"^  ([a-z]+) ", self.succeed("--help"), re.M)
-        self.assertEqual(len(verbs), 19)
+        self.assertEqual(len(verbs), 20)
         for verb in verbs:
             for flag in ("--help", "--help-input"):
                 ran = self.run_command(verb, flag)

@@ -2,6 +2,7 @@
 import json
 import os
 import signal
+import socket
 import subprocess
 import time
 import unittest
@@ -47,6 +48,41 @@ class RecordStream(CommandTest):
                 self.assertAlmostEqual(times[k], float(rows[k][0]) - float(rows[0][0]), places=5)
                 self.assertAlmostEqual(streamed[k], float(rows[k][1 + c]), delta=1e-5 * max(1.0, abs(streamed[k])),
                                        msg=f"{name} {k}")
+
+    def received(self, reader, address):
+        """Datagrams of an estimate of tilt while it is recorded."""
+        reader.settimeout(20)
+        with reader:
+            recorder = subprocess.Popen(
+                [PROGRAM, "record", "sim:static?rate=100", "--duration", "4", "--estimate", "tilt", "--send-to", address,
+                 "--no-file", "--quiet"], cwd=self.folder, stdout=subprocess.DEVNULL)
+            self.addCleanup(recorder.wait, 60)
+            self.addCleanup(recorder.kill)
+            found = [json.loads(reader.recv(4096)) for _ in range(40)]
+        self.assertEqual(recorder.wait(60), 0)
+        return found
+
+    def test_estimates_are_sent_to_a_controller(self):
+        to_port = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        to_port.bind(("127.0.0.1", 0))
+        to_path = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        to_path.bind(str(self.folder / "controller"))
+        for reader, address in ((to_port, f"udp:127.0.0.1:{to_port.getsockname()[1]}"), (to_path, "unix:controller")):
+            found = self.received(reader, address)
+            times = [one["time_s"] for one in found]
+            self.assertEqual(times, sorted(times))
+            self.assertGreater(times[-1], 0.3)
+            self.assertIn("roll", found[-1])
+            self.assertLess(found[-1]["roll_std"], 0.2)
+
+    def test_nobody_takes_the_estimates(self):
+        ran = self.run_command("record", "sim:static?rate=100", "--duration", "1", "--estimate", "tilt", "--no-file",
+                               "--send-to", "unix:nobody")
+        self.assertEqual(ran.returncode, 0)
+        self.assertIn("dropped by --send-to", ran.stderr.decode())
+        self.assertFalse((self.folder / "nobody").exists())
+        for address in ("tcp:1", "udp:9000", "unix:", "unix:" + "x" * 200):
+            self.expect_failure(USAGE, "record", "sim:static", "--estimate", "tilt", "--no-file", "--send-to", address)
 
     def test_without_a_file_nothing_is_written(self):
         kinds = by_kind(self.succeed("record", "sim:static?rate=100&speed=max&seconds=20", "--no-file",

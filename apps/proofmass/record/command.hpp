@@ -29,6 +29,7 @@ struct RecordCommand {
   bool reconnect = false;
   double stall_s = 2.0, stall_end_s = 30.0;
   std::string estimate;  ///< wheel, track or tilt; empty: none
+  std::string send_to;   ///< address for the estimates: udp:HOST:PORT or unix:PATH; empty: none
   GuideFlags guide;
   std::optional<double> lag_s, radius_m, bandwidth_hz;
   std::string axis;  ///< axle of the wheel, or direction of the motion

@@ -14,6 +14,7 @@
 #include "proofmass/acquire/recorder.hpp"
 #include "proofmass/report/record_report.hpp"
 #include "record/command.hpp"
+#include "record/estimate_sender.hpp"
 #include "record/guide.hpp"
 #include "record/live_estimate.hpp"
 #include "record/live_source.hpp"
@@ -77,6 +78,10 @@ void add_estimate_flags(CLI::App& verb, RecordCommand& command) {
   estimate->check(CLI::IsMember({"wheel", "tilt", "track"}));
   add("--lag", command.lag_s, "S", "lag of the fixed-lag smoother (default 0.25; 3 for track)")
       ->check(not_negative())
+      ->needs(estimate);
+  add("--send-to", command.send_to, "ADDRESS",
+      "send each estimate as a datagram of JSON, for a controller: udp:HOST:PORT, or unix:PATH of "
+      "a datagram socket that it has bound")
       ->needs(estimate);
   add("--radius", command.radius_m, "M", "distance of the wheel's sensors from the axle, if known")
       ->check(positive())
@@ -236,11 +241,12 @@ acquire::RecordOptions options_of(const RecordCommand& command) {
   return options;
 }
 
-// What follows a recording besides the file; guide and stream may be null.
+// What follows a recording besides the file; all but the view may be null.
 struct Followers {
   LiveView& view;
   RecordGuide* guide;
   RecordStream* stream;
+  EstimateSender* sender;
 };
 
 void follow_samples(const Followers& to, const Block& block) {
@@ -270,6 +276,7 @@ acquire::RecordWatch watch_by(const Followers& to,
   };
   watch.samples = [to](const Block& block) { follow_samples(to, block); };
   watch.estimates = [to](const Block& rows) {
+    if (to.sender != nullptr) to.sender->estimates(rows);
     to.view.estimates(rows);
     if (to.stream != nullptr) to.stream->estimates(rows);
   };
@@ -289,13 +296,14 @@ ExitStatus status_of(const Error& error, bool was_open) {
 
 report::RecordReport record(const RecordCommand& command,
                             RecordGuide* guide,
-                            RecordStream* stream) {
+                            RecordStream* stream,
+                            EstimateSender* sender) {
   report::RecordReport report;
   report.source = acquire::shown_uri(command.source);
   const acquire::RecordOptions options = options_of(command);
   LiveView view(report.source, command.no_file ? "no file" : options.path, command.output);
   const acquire::RecordWatch watch =
-      watch_by({view, guide, stream}, command.no_file ? "" : options.path, report);
+      watch_by({view, guide, stream, sender}, command.no_file ? "" : options.path, report);
   bool was_open = false;
   const acquire::OpenSource open = [&was_open, opener = source_opener(command)] {
     auto source = opener();
@@ -304,6 +312,7 @@ report::RecordReport record(const RecordCommand& command,
   };
   const auto columns = [&](const std::vector<Channel>& made) {
     view.estimating(made);
+    if (sender != nullptr) sender->estimating(made);
     if (stream != nullptr) stream->estimating(made);
   };
   auto summary =
@@ -312,6 +321,11 @@ report::RecordReport record(const RecordCommand& command,
   report.summary = std::move(summary).value();
   if (stream != nullptr && guide != nullptr) stream->guide([&] { return guide->picture(); }, true);
   if (stream != nullptr) stream->ended(report.summary);
+  if (sender != nullptr && sender->dropped() > 0)
+    report.notes.push_back(
+        {Severity::warning,
+         fmt::format("{} of {} estimates were dropped by --send-to, as nobody took them",
+                     sender->dropped(), sender->sent() + sender->dropped())});
   return report;
 }
 
@@ -337,9 +351,12 @@ void run_record(const RecordCommand& given) {
   if (!command.guide.procedure.empty()) guide.emplace(command);
   std::optional<RecordStream> stream;
   if (command.stream) stream.emplace();
+  std::optional<EstimateSender> sender;
+  if (!command.send_to.empty()) sender.emplace(command.send_to);
   without_interruption([&] {
     const report::RecordReport report =
-        record(command, guide ? &*guide : nullptr, stream ? &*stream : nullptr);
+        record(command, guide ? &*guide : nullptr, stream ? &*stream : nullptr,
+               sender ? &*sender : nullptr);
     const report::Document document = report::describe(report);
     show_notes(report.notes, "", command.output);
     // With a procedure, the document is that of its verb.
