@@ -9,6 +9,7 @@ from . import fleet, live
 from ._allan import Deviation, allan
 from ._core import ArgumentError, DataError, Error, FileError
 from ._core import version as __version__
+from ._drive import drive
 from ._kalman import Estimate, KalmanModel
 from ._recording import Recording, read
 from ._results import Missing, Node, Quantity, Result
@@ -18,6 +19,6 @@ from ._verbs import Simulated, calibrate, drift, inspect, motor, noise, simulate
 
 __all__ = [
     "ArgumentError", "DataError", "Deviation", "Error", "Estimate", "FileError", "KalmanModel", "Missing", "Node",
-    "ProofmassWarning", "Quantity", "Recording", "Result", "Sensor", "Simulated", "allan", "calibrate", "drift",
+    "ProofmassWarning", "Quantity", "Recording", "Result", "Sensor", "Simulated", "allan", "calibrate", "drift", "drive",
     "fleet", "inspect", "live", "motor", "noise", "read", "simulate", "tilt", "track", "tumble", "tune", "wheel", "__version__",
 ]  # fmt: skip

@@ -19,24 +19,36 @@ class ProofmassWarning(UserWarning):
     """A warning about the data or a result."""
 
 
-def run(verb: str, data: Any, options: dict[str, Any], progress: Progress, output: Optional[str]) -> Result:
-    """Run a verb on files, recordings, DataFrames or arrays."""
+def run(
+    verb: str,
+    data: Any,
+    options: dict[str, Any],
+    progress: Progress,
+    output: Optional[str],
+    by_option: Optional[dict[str, Any]] = None,
+) -> Result:
+    """Run a verb on files, recordings, DataFrames or arrays; `by_option` has those that an option takes."""
     sensors: dict[str, str] = {}
     options = {name: _without_sensors(value, sensors) for name, value in options.items()}
     inputs = _inputs(data)
     as_array = any(not isinstance(item, (str, Recording)) for item in inputs)
-    names: list[str] = []
     given: dict[str, _core.Recording] = {}
-    for item in inputs:
+    known: dict[int, str] = {}
+
+    def name_of(item: Any) -> str:
         if isinstance(item, str):
-            names.append(_options.file_word(item))
-            continue
-        recording = item if isinstance(item, Recording) else _made(item, options)
-        names.append(_free_name(_options.file_word(recording.source), given))
-        given[names[-1]] = recording._handle
+            return _options.file_word(item)
+        if id(item) not in known:
+            recording = item if isinstance(item, Recording) else _made(item, options)
+            known[id(item)] = _free_name(_options.file_word(recording.source), given)
+            given[known[id(item)]] = recording._handle
+        return known[id(item)]
+
+    names = [name_of(item) for item in inputs]
+    named = {flag: [name_of(item) for item in _inputs(value)] for flag, value in (by_option or {}).items()}
     if as_array:
         options = {name: value for name, value in options.items() if name not in ("rate_hz", "unit", "time")}
-    words = [verb, *names, *_options.words(options), *([f"--output={output}"] if output else [])]
+    words = [verb, *names, *_options.words(named), *_options.words(options), *([f"--output={output}"] if output else [])]
     temporary = as_array and not any(isinstance(item, Recording) for item in inputs)
     try:
         with Shown(progress) as shown:

@@ -20,7 +20,7 @@ OF_THE_COMMAND = {
 
 
 @pytest.mark.parametrize(
-    "verb", ["inspect", "noise", "drift", "calibrate", "tumble", "wheel", "track", "tilt", "motor", "tune", "simulate"]
+    "verb", ["inspect", "noise", "drift", "calibrate", "tumble", "wheel", "drive", "track", "tilt", "motor", "tune", "simulate"]
 )
 def test_options_are_the_flags(verb):
     text = "".join(
@@ -36,7 +36,7 @@ def test_options_are_the_flags(verb):
     assert set(documented) - {"x", "rig", "progress"} == options
 
 
-@pytest.mark.parametrize("name", ["", "._verbs", "._recording", "._results", "._sensor", "._allan", "._kalman", ".live"])
+@pytest.mark.parametrize("name", ["", "._verbs", "._drive", "._recording", "._results", "._sensor", "._allan", "._kalman", ".live"])
 def test_examples_print_what_they_say(name):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", pm.ProofmassWarning)
