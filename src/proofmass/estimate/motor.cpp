@@ -91,8 +91,11 @@ Result<MotorSolution> estimate_motor(const MotorRecord& record, const MotorOptio
                                std::move(speed.radps), speed.std_radps, gap_rad, speed.half_window);
     if (rows(motion) < least_rows) return too_still();
   }
-  const MechanicalFit mechanical = electrical ? motor::fit_with_current(series, motion, *electrical)
-                                              : motor::fit_without_current(series, motion);
+  const Result<MechanicalFit> found = electrical
+                                          ? motor::fit_with_current(series, motion, *electrical)
+                                          : motor::fit_without_current(series, motion);
+  if (!found) return found.error();
+  const MechanicalFit& mechanical = *found;
   const motor::Findings findings(series, motion, electrical, mechanical);
   MotorSolution out;
   out.parameters = findings.parameters();

@@ -84,6 +84,22 @@ TEST(Motor, RefusesALoadThatRests) {
   EXPECT_FALSE(estimate_motor(simulated({}, {.duration_s = 5.0}, nothing, 5)));
 }
 
+// Pushes to and fro that hardly leave a rest: an error, not a violated contract.
+TEST(Motor, RefusesALoadThatHardlyMoves) {
+  MotorRecord record;
+  for (int k = 0; k < 800; ++k) {
+    const double t = 0.005 * k;
+    record.time_s.push_back(t);
+    record.voltage_v.push_back(3.0 * std::sin(40.0 * t));
+    record.angle_rad.push_back(0.02 * std::sin(40.0 * t));
+  }
+  const auto without = estimate_motor(record);
+  ASSERT_FALSE(without);
+  EXPECT_EQ(without.error().code, Errc::not_observable);
+  record.current_a.assign(record.time_s.size(), 0.1);
+  EXPECT_FALSE(estimate_motor(record));
+}
+
 TEST(Motor, RefusesColumnsOfUnequalLength) {
   MotorRecord record = simulated({}, {.duration_s = 2.0}, exploring, 6);
   record.current_a.pop_back();

@@ -23,7 +23,6 @@ class Findings {
   [[nodiscard]] double friction_at(double speed_radps) const;
 
  private:
-  using Figure = double (*)(const Eigen::VectorXd&);
   /// A function of the coefficients with its standard deviation by its gradient.
   template <class Function>
   [[nodiscard]] Uncertain figure(const Function& of) const;

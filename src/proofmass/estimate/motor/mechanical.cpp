@@ -35,6 +35,13 @@ Rows moving_rows(const Motion& motion, double least_radps) {
   return rows;
 }
 
+// Each motion costs a row for its constant.
+Status check(const Rows& rows) {
+  constexpr std::size_t least = 100;
+  if (rows.samples.size() >= rows.starts.size() + least) return Done{};
+  return Error{Errc::not_observable, "the load moves too briefly: nothing shows the drive"};
+}
+
 /// The regression without the columns of the Stribeck curve, which depend on its speed.
 class Equation {
  public:
@@ -235,10 +242,11 @@ void set_predicted_angle(const Solved& solved,
 
 }  // namespace
 
-MechanicalFit fit_with_current(const Series& series,
-                               const Motion& motion,
-                               const ElectricalFit& electrical) {
+Result<MechanicalFit> fit_with_current(const Series& series,
+                                       const Motion& motion,
+                                       const ElectricalFit& electrical) {
   const Rows rows = moving_rows(motion, 0.0);
+  if (const Status enough = check(rows); !enough) return enough.error();
   std::vector<double> minus_speed = motion.speed_radps;
   for (double& w : minus_speed) w = -w;
   const VectorXd speed = electrical.speed_terms * electrical.value;
@@ -258,11 +266,12 @@ MechanicalFit fit_with_current(const Series& series,
   return out;
 }
 
-MechanicalFit fit_without_current(const Series& series, const Motion& load) {
+Result<MechanicalFit> fit_without_current(const Series& series, const Motion& load) {
   // Near a rest the speed by the load's angle is too noisy to show how friction rises.
   constexpr double fast_share = 0.15;
   constexpr int rounds = 3;
   const Rows rows = moving_rows(load, fast_share * load.top_radps());
+  if (const Status enough = check(rows); !enough) return enough.error();
   Motion motion = load;
   std::optional<Solved> solved;
   for (int round = 0; round < rounds; ++round) {

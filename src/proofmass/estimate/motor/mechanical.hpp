@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "proofmass/core/result.hpp"
 #include "proofmass/estimate/motor/electrical.hpp"
 
 namespace proofmass::estimate::motor {
@@ -37,10 +38,11 @@ struct MechanicalFit {
 ///     J ω' = K i − b ω − (Tc + Fs exp(−(ω/ωs)²)) sgn ω − T0 − U cos(θ + φ),
 ///
 /// integrated once, so that the speed is the measured quantity and what the regression takes as
-/// exact, the integrals of current, speed and friction, is far less noisy.
-[[nodiscard]] MechanicalFit fit_with_current(const Series& series,
-                                             const Motion& motion,
-                                             const ElectricalFit& electrical);
+/// exact, the integrals of current, speed and friction, is far less noisy. Errors of both:
+/// not_observable (the load moves too briefly).
+[[nodiscard]] Result<MechanicalFit> fit_with_current(const Series& series,
+                                                     const Motion& motion,
+                                                     const ElectricalFit& electrical);
 
 /// Without a current, with u = R i + K ω:
 ///
@@ -48,6 +50,6 @@ struct MechanicalFit {
 ///
 /// B = K + b R/K, J' = J R/K, friction in volts. Friction at rest and in the gap of the gear is not
 /// known, so each motion between rests has a constant of its own.
-[[nodiscard]] MechanicalFit fit_without_current(const Series& series, const Motion& motion);
+[[nodiscard]] Result<MechanicalFit> fit_without_current(const Series& series, const Motion& motion);
 
 }  // namespace proofmass::estimate::motor
