@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <limits>
 #include <optional>
@@ -172,9 +173,13 @@ Figure servo_speed_figure(const ServoStudy& study) {
   Figure figure{.title = "Speed steps in a closed loop",
                 .description = "True speed of the wheel with each feedback, friction compensated.",
                 .x = {.label = "Time (s)"},
-                .y = {.label = "Speed (rpm)", .min = -30.0, .max = 30.0}};
+                .y = {.label = "Speed (rpm)", .min = -20.0, .max = 20.0}};
+  constexpr std::array inks{Ink::blue, Ink::red, Ink::orange, Ink::green};
   for (const ServoTrace* trace : compensated_traces(study.speed_traces)) {
-    Curve curve{.label = feedback_words(trace->feedback), .x = trace->time_s, .y = {}};
+    Curve curve{.label = feedback_words(trace->feedback),
+                .x = trace->time_s,
+                .y = {},
+                .ink = inks[static_cast<std::size_t>(trace->feedback)]};
     for (const double speed : trace->truth) curve.y.push_back(speed / radps_per_rpm);
     figure.curves.push_back(std::move(curve));
   }

@@ -34,8 +34,9 @@ Item feedback_item(const ServoStudy& study) {
                 "filter.",
             .ours = {},
             .note =
-                "Of the drive's digital twin, with the controller designed from what `motor` "
-                "identifies; worst of five runs. A smoothed value needs later measurements, so the "
+                "On the drive's digital twin, with the controller designed from the figures that "
+                "the verb motor identifies; worst of five runs. A smoothed value needs later "
+                "measurements, so the "
                 "feedback is the filter's. The remaining error of the angle is that of the "
                 "accelerometers' biases, which the filter estimates as the wheel turns."};
   Findings findings;
