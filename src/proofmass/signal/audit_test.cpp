@@ -197,6 +197,33 @@ TEST(Clipping, IsSeenBelowNoiseThatWasAddedBehindIt) {
   EXPECT_NE(notes_of(found).find("with noise added after it"), std::string::npos);
 }
 
+/// Vibration of a broad band, standard deviation 1, at up to a third of a cycle per sample.
+std::vector<double> vibration() {
+  const std::vector<double> white = noise(20'003, 1.0);
+  std::vector<double> out;
+  for (std::size_t k = 3; k < white.size(); ++k)
+    out.push_back(0.5 * (white[k] + white[k - 1] + white[k - 2] + white[k - 3]));
+  return out;
+}
+
+TEST(Clipping, IsSeenInVibrationWhoseVisitsAreShort) {
+  std::vector<double> errors = noise(20'000, 0.01);
+  std::ranges::reverse(errors);  // independent of the vibration, which has the same seed
+  std::vector<double> values = vibration();
+  ASSERT_EQ(audit(recording_of(values)).channels[0].clipping, Clipping::none);
+  std::size_t at_limit = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (std::abs(values[k]) >= 2.0) ++at_limit;
+    values[k] = std::clamp(values[k], -2.0, 2.0) + errors[k];
+  }
+  const RecordingAudit found = audit(recording_of(values));
+  EXPECT_EQ(found.channels[0].clipping, Clipping::before_noise);
+  EXPECT_NEAR(found.channels[0].limit_high.value(), 2.0, 0.005);
+  EXPECT_NEAR(found.channels[0].limit_low.value(), -2.0, 0.005);
+  EXPECT_NEAR(static_cast<double>(found.channels[0].clipped), static_cast<double>(at_limit),
+              0.1 * static_cast<double>(at_limit));
+}
+
 TEST(Clipping, IsSeenWhereTheRangeBendsTheSignal) {
   const std::vector<double> errors = noise(20'000, 0.002);
   std::vector<double> values = uneven_motion(3.0);

@@ -70,6 +70,11 @@ Series motion(Random& random, std::size_t n, int kind) {
   return out;
 }
 
+/// Vibration of a broad band, up to a tenth of the rate to a third of it.
+Series vibration(Random& random, std::size_t n) {
+  return gaussian(random, n, random.log_uniform(0.02, 0.2));
+}
+
 void add_noise(Random& random, Series& values, double std) {
   for (double& x : values) x += std * random.normal();
 }
@@ -232,12 +237,22 @@ std::vector<Kind> kinds() {
        [](Random& r, std::size_t n) { return limited(r, n, cut, 0.0, 0.0); }},
       {"hard clip, then noise", true, Clipping::before_noise, 140,
        [](Random& r, std::size_t n) { return limited(r, n, cut, 3e-4, 2e-2); }},
+      {"vibration, hard clip, then noise", true, Clipping::before_noise, 175,
+       [](Random& r, std::size_t n) {
+         Series out = vibration(r, n);
+         const double most = r.uniform(1.0, 2.3);
+         for (double& x : out) x = std::clamp(x, -most, most);
+         add_noise(r, out, r.log_uniform(3e-4, 2e-2));
+         if (r.chance(0.4)) quantise(out, 1.0 / std::exp2(std::floor(r.uniform(7.0, 13.0))));
+         return out;
+       }},
       {"soft clip", true, Clipping::soft, 130,
        [](Random& r, std::size_t n) { return limited(r, n, bent, 3e-5, 5e-3); }},
       {"sine", false, {}, 0, free(0)},
       {"modulated sine", false, {}, 0, free(1)},
       {"several sines", false, {}, 0, free(2)},
       {"noise of a band", false, {}, 0, free(3)},
+      {"vibration", false, {}, 0, of(vibration)},
       {"sweep", false, {}, 0, free(4)},
       {"decays", false, {}, 0, free(5)},
       {"six positions", false, {}, 0, held(0)},

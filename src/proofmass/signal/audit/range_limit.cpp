@@ -10,6 +10,7 @@ namespace proofmass::signal {
 
 std::optional<RangeLimit> find_upper_limit(View<double> series) {
   if (const auto hard = find_hard_limit(series)) return hard;
+  if (const auto crowded = find_crowded_limit(series)) return crowded;
   return find_soft_limit(series);
 }
 

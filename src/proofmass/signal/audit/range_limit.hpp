@@ -20,8 +20,9 @@ struct RangeLimit {
   std::size_t samples = 0;  ///< at the limit, or beyond the level
 };
 
-/// Searches for a limit above the signal: find_hard_limit(), then find_soft_limit(). NaN in the
-/// series ends a segment. A lower limit is that of the negated series.
+/// Searches for a limit above the signal: find_hard_limit(), find_crowded_limit(), then
+/// find_soft_limit(). NaN in the series ends a segment. A lower limit is that of the negated
+/// series.
 [[nodiscard]] std::optional<RangeLimit> find_upper_limit(View<double> series);
 
 /// A clipping level with noise added afterwards. A clipped signal
@@ -38,6 +39,12 @@ struct RangeLimit {
 /// level is missing, because a motion with flat crests repeats as well. If the visits differ, the
 /// flanks must not be straight, as those of a ramp between two stops are.
 [[nodiscard]] std::optional<RangeLimit> find_hard_limit(View<double> series);
+
+/// The same for a signal whose visits to the limit are shorter than the segments by which
+/// find_hard_limit() finds it, as in broad-band vibration: values crowd at the limit, in many
+/// visits of different length, at which the slopes do not decay, and which last as long as the
+/// signal's own oscillation would have been above.
+[[nodiscard]] std::optional<RangeLimit> find_crowded_limit(View<double> series);
 
 /// A level towards which the signal is compressed. By Rice's formula the time spent near a level
 /// and the number of crossings give the slope there. The mean square of the slope at height u falls
