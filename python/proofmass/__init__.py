@@ -7,15 +7,19 @@
 """
 from . import fleet, live
 from ._allan import Deviation, allan
+from ._calibrate import calibrate, tumble
+from ._characterise import drift, noise
 from ._core import ArgumentError, DataError, Error, FileError
 from ._core import version as __version__
 from ._drive import drive
+from ._estimate import motor, tilt, track, tune, wheel
+from ._inspect import inspect
 from ._kalman import Estimate, KalmanModel
 from ._recording import Recording, read
 from ._results import Missing, Node, Quantity, Result
 from ._run import ProofmassWarning
 from ._sensor import Sensor
-from ._verbs import Simulated, calibrate, drift, inspect, motor, noise, simulate, tilt, track, tumble, tune, wheel
+from ._simulate import Simulated, simulate
 
 __all__ = [
     "ArgumentError", "DataError", "Deviation", "Error", "Estimate", "FileError", "KalmanModel", "Missing", "Node",

@@ -256,7 +256,7 @@ class Recording:
 
     @property
     def notes(self) -> list[tuple[str, str]]:
-        return self._handle.notes
+        return [(severity, _options.with_option_names(text)) for severity, text in self._handle.notes]
 
     @property
     def labels(self) -> list[tuple[str, int, int]]:
@@ -310,7 +310,7 @@ class Recording:
 
     def inspect(self, **options: Any) -> Any:
         """Content and quality of the recording: ``proofmass.inspect``."""
-        from ._verbs import inspect
+        from ._inspect import inspect
 
         return inspect(self, **options)
 

@@ -36,7 +36,8 @@ def test_options_are_the_flags(verb):
     assert set(documented) - {"x", "rig", "progress"} == options
 
 
-@pytest.mark.parametrize("name", ["", "._verbs", "._drive", "._recording", "._results", "._sensor", "._allan", "._kalman", ".live"])
+@pytest.mark.parametrize("name", ["", "._inspect", "._characterise", "._calibrate", "._estimate", "._drive", "._simulate", "._recording", "._results", "._sensor", "._options",
+                                  "._allan", "._kalman", ".live"])
 def test_examples_print_what_they_say(name):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", pm.ProofmassWarning)
