@@ -45,9 +45,19 @@ def in_python(error: Error) -> Error:
 
 
 def with_option_names(text: str) -> str:
-    """A message of the command, with names of options instead of flags."""
+    """A message of the command, with names of options instead of flags.
+
+    >>> with_option_names("which is gravity in g (--unit g, --rate)")
+    "which is gravity in g (unit='g', rate_hz=)"
+    """
     text = re.sub(r"proofmass ([a-z]+) --help", r"help(proofmass.\1)", text)
+    text = re.sub(r"\((--[^()]+)\)$", lambda advice: "(" + ", ".join(map(_assigned, advice[1].split(", "))) + ")", text)
     return re.sub(r"--([a-z][a-z0-9-]*)", lambda flag: _name_of(flag[1]) + "=", text)
+
+
+def _assigned(flag: str) -> str:
+    name, _, value = flag.removeprefix("--").partition(" ")
+    return f"{_name_of(name)}={value!r}" if value else f"{_name_of(name)}="
 
 
 def _name_of(flag: str) -> str:

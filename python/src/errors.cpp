@@ -1,6 +1,7 @@
 #include "errors.hpp"
 
 #include "cli/exit_status.hpp"
+#include "proofmass/report/wording.hpp"
 
 namespace py = pybind11;
 
@@ -53,8 +54,9 @@ void translate(std::exception_ptr thrown) {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const app::Failure& failure) {
     PyErr_SetString(type_of(failure), failure.what());
-  } catch (const ResultError& error) {
-    PyErr_SetString(type_of(error.code()), error.what());
+  } catch (const ResultError& thrown_error) {
+    const Error& error = thrown_error.error();
+    PyErr_SetString(type_of(error.code), report::with_flags(error).c_str());
   }
 }
 

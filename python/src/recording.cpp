@@ -13,6 +13,7 @@
 #include "proofmass/core/units.hpp"
 #include "proofmass/io/recording_in_memory.hpp"
 #include "proofmass/report/inspect_report.hpp"
+#include "proofmass/report/wording.hpp"
 #include "words.hpp"
 
 namespace py = pybind11;
@@ -92,8 +93,11 @@ py::dict state_of(const SharedRecording& recording) {
   }
   const TimeBase& time = recording->time;
   py::list notes, labels;
-  for (const Note& note : recording->notes)
-    notes.append(py::make_tuple(static_cast<int>(note.severity), note.text));
+  for (const Note& note : recording->notes) {
+    py::list advice;
+    for (const Advice& one : note.advice) advice.append(py::make_tuple(one.option, one.value));
+    notes.append(py::make_tuple(static_cast<int>(note.severity), note.text, advice));
+  }
   for (const Label& label : recording->labels)
     labels.append(py::make_tuple(label.text, label.first, label.last));
   state["source"] = recording->source;
@@ -138,8 +142,12 @@ SharedRecording from_state(const py::dict& state) {
   recording.time = time_from(state["time"].cast<py::tuple>());
   for (const py::handle item : state["notes"]) {
     const auto note = item.cast<py::tuple>();
-    recording.notes.push_back(
-        {static_cast<Severity>(note[0].cast<int>()), note[1].cast<std::string>()});
+    Note& made = recording.notes.emplace_back();
+    made.severity = static_cast<Severity>(note[0].cast<int>());
+    made.text = note[1].cast<std::string>();
+    for (const auto& [option, value] :
+         note[2].cast<std::vector<std::pair<std::string, std::string>>>())
+      made.advice.push_back({option, value});
   }
   for (const py::handle item : state["labels"]) {
     const auto label = item.cast<py::tuple>();
@@ -167,7 +175,7 @@ std::string word_of(Severity severity) {
 
 std::vector<std::pair<std::string, std::string>> words_of(const std::vector<Note>& notes) {
   std::vector<std::pair<std::string, std::string>> out;
-  for (const Note& note : notes) out.emplace_back(word_of(note.severity), note.text);
+  for (const Note& note : notes) out.emplace_back(word_of(note.severity), report::with_flags(note));
   return out;
 }
 

@@ -71,7 +71,7 @@ void update(const CalibrateCommand& command, const report::EncoderReport& report
     measured.errors_rad[2 * order + 1] = report.fit.harmonics[order].sin_rad;
   }
   const Status done = sensor::update_encoder(command.update_sensor, measured);
-  if (!done) throw Failure(status_of(done.error(), Stage::writing), done.error().message);
+  if (!done) throw Failure(status_of(done.error(), Stage::writing), done.error());
 }
 
 }  // namespace

@@ -189,8 +189,7 @@ void calibrate_gyroscope(const CalibrateCommand& command,
     throw Failure(usage, "--turntable goes with one recording");
   auto fit = calibrate::calibrate_gyroscope(sessions_of(set), report.fit, options);
   if (!fit) {
-    throw Failure(status_of(fit.error(), Stage::computing),
-                  fit.error().at(report.inputs.front()).message);
+    throw Failure(status_of(fit.error(), Stage::computing), fit.error().at(report.inputs.front()));
   }
   report::GyroscopeReport& out = report.gyroscope.emplace();
   out.unit = set.rates.front().unit;
@@ -215,7 +214,7 @@ void update_gyroscope(const CalibrateCommand& command, const report::CalibrateRe
           found.fit.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
   }
   const Status done = sensor::update_gyroscope(command.update_sensor, measured);
-  if (!done) throw Failure(status_of(done.error(), Stage::writing), done.error().message);
+  if (!done) throw Failure(status_of(done.error(), Stage::writing), done.error());
 }
 
 }  // namespace proofmass::app

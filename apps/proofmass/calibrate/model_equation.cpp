@@ -180,7 +180,7 @@ report::ModelOutput fit_output(const Recording& table,
   if (!fit) {
     const Error error = fit.error().at(channel.name).at(table.source);
     const bool of_file = error.code == Errc::not_finite || error.code == Errc::invalid_argument;
-    throw Failure(of_file ? bad_input : status_of(error, Stage::computing), error.message);
+    throw Failure(of_file ? bad_input : status_of(error, Stage::computing), error);
   }
   output.fit = std::move(fit).value();
   output.cross_axis = cross_axis_of(output.fit);

@@ -42,14 +42,13 @@ std::optional<Eigen::Vector3d> vector_of(const std::optional<std::array<double, 
   return Eigen::Vector3d(up->data());
 }
 
-// With a hint to the flag that helps.
+// With advice for a recording of positions.
 Failure failure_of(const Error& error, const std::string& file) {
-  const std::string message = error.at(file).message;
-  if (error.code == Errc::invalid_argument)
-    return {usage, message + ": choose its three channels with --channel, their unit with --unit"};
-  if (error.code == Errc::not_observable)
-    return {bad_input, message + "; give the rests with --rests FILE"};
-  return {status_of(error, Stage::reading), message, error.code};
+  Error shown = error.at(file);
+  if (error.code == Errc::invalid_argument) shown.advice = {Advice{"channel"}, Advice{"unit"}};
+  if (error.code != Errc::not_observable) return {status_of(error, Stage::reading), shown};
+  shown.advice = {Advice{"rests"}};
+  return {bad_input, shown};
 }
 
 template <class T>
@@ -152,7 +151,7 @@ std::optional<double> bring_to_reference_supply(const std::string& sensor_file,
   const bool volts = recording.channels[*triad.x].unit.quantity == Quantity::voltage;
   if (!volts) return std::nullopt;
   const Status done = sensor::bring_to_reference_supply(electrical, triad, recording);
-  if (!done) throw Failure(bad_input, done.error().at(recording.source).message);
+  if (!done) throw Failure(bad_input, done.error().at(recording.source));
   return electrical.reference_supply->si();
 }
 
@@ -213,7 +212,7 @@ PoseSet read_poses(const std::vector<std::string>& files,
     std::vector<Note> own;
     FilePoses one = poses_of(file, command, own);
     for (Note& note : own) {
-      if (files.size() > 1) note.text = file + ": " + note.text;
+      if (files.size() > 1) note = note.at(file);
       notes.push_back(std::move(note));
     }
     if (!out.files.empty() && one.unit.symbol != out.unit.symbol) {

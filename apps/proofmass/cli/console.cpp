@@ -15,6 +15,7 @@
 #include "cli/plain_text.hpp"
 #include "host.hpp"
 #include "proofmass/io/shown_text.hpp"
+#include "proofmass/report/wording.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -205,8 +206,7 @@ void show_notes(const std::vector<Note>& notes,
                 const OutputFlags& flags) {
   constexpr int yellow = 33, red = 31, grey = 90;
   if (flags.host) {
-    for (const Note& note : notes)
-      flags.host->notes.push_back({note.severity, (where.empty() ? "" : where + ": ") + note.text});
+    for (const Note& note : notes) flags.host->notes.push_back(note.at(where));
     return;
   }
   if (flags.quiet) return;
@@ -215,8 +215,7 @@ void show_notes(const std::vector<Note>& notes,
     if (note.severity == Severity::bad) word = painted("bad data", red);
     if (note.severity == Severity::info) word = painted("note", grey);
     if (note.severity == Severity::info && !flags.verbose) continue;
-    print(fmt::format("{}: {}{}{}\n", word, io::clean_text(where), where.empty() ? "" : ": ",
-                      io::clean_text(note.text)));
+    print(fmt::format("{}: {}\n", word, io::clean_text(report::with_flags(note.at(where)))));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "proofmass/core/result.hpp"
+#include "proofmass/report/wording.hpp"
 
 namespace proofmass::app {
 
@@ -23,8 +24,10 @@ enum ExitStatus : int {
 /// Ends a verb early: main() prints the message and returns the status.
 class Failure : public std::exception {
  public:
-  Failure(ExitStatus status, std::string message, std::optional<Errc> code = {})
-      : status_(status), message_(std::move(message)), code_(code) {}
+  Failure(ExitStatus status, std::string message) : status_(status), message_(std::move(message)) {}
+  /// The message names the options that would help.
+  Failure(ExitStatus status, const Error& error)
+      : status_(status), message_(report::with_flags(error)), code_(error.code) {}
   [[nodiscard]] ExitStatus status() const { return status_; }
   /// Code of the library error that caused it, if any.
   [[nodiscard]] std::optional<Errc> code() const { return code_; }
@@ -44,10 +47,7 @@ enum class Stage { reading, computing, writing };
 /// The value, or a Failure.
 template <class T>
 [[nodiscard]] T need(Result<T> result, Stage stage) {
-  if (!result) {
-    const Error& error = result.error();
-    throw Failure(status_of(error, stage), error.message, error.code);
-  }
+  if (!result) throw Failure(status_of(result.error(), stage), result.error());
   return std::move(result).value();
 }
 

@@ -112,7 +112,7 @@ void write_series(Recording recording, const OutputFlags& flags, const io::Write
     all.duckdb_library = duckdb_library();
     const Status status = io::write_recording(recording, path, all);
     if (status) return;
-    throw Failure(status_of(status.error(), Stage::writing), status.error().message);
+    throw Failure(status_of(status.error(), Stage::writing), status.error());
   };
   // Standard output may be a pipe that blocks, and cannot be left half written like a file.
   if (path == "-") return write();

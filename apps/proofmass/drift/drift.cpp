@@ -224,7 +224,7 @@ void update_drift(const std::string& path,
   }
   if (drift.empty()) return;
   const Status status = sensor::update_sensor_file(path, drift);
-  if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error().message);
+  if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error());
 }
 
 void run_drift(const DriftCommand& command) {

@@ -84,7 +84,7 @@ Converted convert(Recording recording,
 }
 
 void hold(const Status& status) {
-  if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error().message);
+  if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error());
 }
 
 Converted convert(io::RecordingStream stream,

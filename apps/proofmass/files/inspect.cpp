@@ -63,7 +63,7 @@ void check_pyramid(const InspectCommand& command) {
 
 void store(io::PyramidBuilder& builder, const std::string& file) {
   const Status stored = io::store_pyramid(builder.finish(), file);
-  if (!stored) throw Failure(status_of(stored.error(), Stage::writing), stored.error().message);
+  if (!stored) throw Failure(status_of(stored.error(), Stage::writing), stored.error());
 }
 
 // Audit of the file in its own units; in m/s^2 only with a sensor file.

@@ -81,7 +81,7 @@ std::string exported(const SensorCommand& command, const sensor::SensorModel& mo
   if (!command.rostopic.empty()) options.rostopic = command.rostopic;
   const Result<std::string> text =
       command.format == "c-header" ? sensor::c_header(model) : sensor::imu_yaml(model, options);
-  if (!text) throw Failure(bad_input, text.error().at(command.files.front()).message);
+  if (!text) throw Failure(bad_input, text.error().at(command.files.front()));
   return *text;
 }
 

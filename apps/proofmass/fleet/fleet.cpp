@@ -91,7 +91,7 @@ void run_summary(const FleetCommand& command) {
   const fleet::Summary summary =
       need(fleet::summarise(command.manifest, summary_options(command)), Stage::reading);
   const Status written = fleet::write_tables(command.manifest);
-  if (!written) throw Failure(status_of(written.error(), Stage::writing), written.error().message);
+  if (!written) throw Failure(status_of(written.error(), Stage::writing), written.error());
   finish(fleet::describe(summary, links_to(command.manifest, command.output.report)), {},
          command.output);
 }

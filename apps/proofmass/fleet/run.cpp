@@ -298,7 +298,7 @@ void Run::keep(const Entry& entry) {
   stamped.ended_s =
       std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   const Status added = results_.append(stamped);
-  if (!added) throw Failure(failed, added.error().message);
+  if (!added) throw Failure(failed, added.error());
 }
 
 bool Run::ended(const fleet::Ended& ended) {
@@ -355,7 +355,7 @@ bool Run::goes_on(std::size_t running) {
 
 void Run::write_tables() {
   const Status written = fleet::write_tables(command_.into);
-  if (!written) throw Failure(status_of(written.error(), Stage::writing), written.error().message);
+  if (!written) throw Failure(status_of(written.error(), Stage::writing), written.error());
 }
 
 Status Run::run_here(const std::vector<std::size_t>& order) {
@@ -405,7 +405,7 @@ FleetReport Run::finish() {
   const Status ran = command_.by.empty() ? run_tasks(plan()) : run_groups();
   panel_.wipe();
   write_tables();
-  if (!ran) throw Failure(failed, ran.error().message);
+  if (!ran) throw Failure(failed, ran.error());
   report_.elapsed_s = std::chrono::duration<double>(Clock::now() - begun_).count();
   std::ranges::sort(report_.failed, {}, &fleet::FailedJob::file);
   if (interruption_waits())

@@ -150,7 +150,7 @@ std::array<std::vector<double>, 3> calibrated_rates_radps(
     }
   }
   const Status applied = sensor::apply(model->gyroscope, accel_mps2, rates);
-  if (!applied) throw Failure(usage, applied.error().at(recording.source).message);
+  if (!applied) throw Failure(usage, applied.error().at(recording.source));
   notes.push_back({Severity::info, fmt::format("gyroscope {} etc.: calibrated by the sensor file",
                                                recording.channels[channels[0]].name)});
   return rates;

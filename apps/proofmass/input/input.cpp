@@ -133,7 +133,7 @@ std::optional<Recording> given_recording(const std::string& file, const InputFla
       flags.host->may_be_read_again ? given->second : std::exchange(given->second, {});
   auto recording = io::recording_in_memory(std::move(taken), read_options(flags, {}));
   if (!recording) {
-    throw Failure(status_of(recording.error(), Stage::reading), recording.error().at(file).message);
+    throw Failure(status_of(recording.error(), Stage::reading), recording.error().at(file));
   }
   return cut_to_window(std::move(recording).value(), flags);
 }
@@ -162,8 +162,7 @@ Recording cut_to_window(Recording recording, const InputFlags& flags) {
       cut(recording, flags.from_s.value_or(-std::numeric_limits<double>::infinity()),
           flags.to_s.value_or(std::numeric_limits<double>::infinity()));
   if (!part) {
-    throw Failure(status_of(part.error(), Stage::reading),
-                  part.error().at(recording.source).message);
+    throw Failure(status_of(part.error(), Stage::reading), part.error().at(recording.source));
   }
   return std::move(part).value();
 }
@@ -238,8 +237,7 @@ void remove_warm_up(const InputFlags& flags,
     const Status done =
         sensor::remove_warm_up(drift, found[k].triad, {*on_s}, recordings[found[k].recording]);
     if (!done) {
-      throw Failure(status_of(done.error(), Stage::reading),
-                    done.error().at(found[k].name).message);
+      throw Failure(status_of(done.error(), Stage::reading), done.error().at(found[k].name));
     }
   }
 }

@@ -44,7 +44,7 @@ void set_samples(const Recording& recording,
 std::vector<ListedRest> listed_rests(const Recording& recording, const std::string& list) {
   const auto intervals = need(io::read_intervals(list), Stage::reading);
   const Status inside = io::check_inside(intervals, recording.duration_s(), recording.samples());
-  if (!inside) throw Failure(bad_input, inside.error().at(list).message);
+  if (!inside) throw Failure(bad_input, inside.error().at(list));
   std::vector<ListedRest> rests;
   for (const io::Interval& interval : intervals) {
     ListedRest& rest = rests.emplace_back();

@@ -95,7 +95,7 @@ void lay_out(Source& source, const std::string& prefix, std::vector<Note>& notes
   Result<signal::EvenGrid> grid = signal::even_grid(recording.time, recording.samples());
   if (!grid) {
     const Error error = grid.error().at(recording.source);
-    throw Failure(status_of(error, Stage::reading), error.message);
+    throw Failure(status_of(error, Stage::reading), error);
   }
   source.grid = std::move(grid).value();
   note_grid(source.grid, source.grid.holes.size(), prefix, notes);

@@ -32,7 +32,7 @@ void keep_notes(const std::vector<Recording>& recordings, std::vector<Note>& not
   for (const Recording& recording : recordings) {
     for (const Note& note : recording.notes) {
       const bool several = recordings.size() > 1;
-      notes.push_back({note.severity, several ? recording.source + ": " + note.text : note.text});
+      notes.push_back(note.at(several ? recording.source : ""));
     }
   }
 }

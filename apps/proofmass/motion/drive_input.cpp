@@ -66,8 +66,7 @@ Recording with_time(const std::string& file, const InputFlags& flags, const Outp
 }
 
 void add_notes(const Recording& recording, std::vector<Note>& notes) {
-  for (const Note& note : recording.notes)
-    notes.push_back({note.severity, recording.source + ": " + note.text});
+  for (const Note& note : recording.notes) notes.push_back(note.at(recording.source));
 }
 
 // The channel of an encoder: an angle, or counts with --counts-per-turn.

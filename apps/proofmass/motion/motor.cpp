@@ -142,8 +142,7 @@ void run_motor(const MotorCommand& command) {
   auto solution = estimate::estimate_motor(record, {.gravity_mps2 = gravity_mps2(command.input),
                                                     .progress = progress_bar(command.output)});
   if (!solution)
-    throw Failure(status_of(solution.error(), Stage::computing),
-                  solution.error().at(command.file).message);
+    throw Failure(status_of(solution.error(), Stage::computing), solution.error().at(command.file));
   report.solution = std::move(solution).value();
   report.notes.insert(report.notes.end(), report.solution.notes.begin(),
                       report.solution.notes.end());

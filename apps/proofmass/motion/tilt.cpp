@@ -147,8 +147,7 @@ estimate::AxisTiltSolution solve_axis(const TiltCommand& command, std::vector<No
                           Quantity::angular_rate, command.rate_unit, "--rate-channel")};
   auto solution = estimate::estimate_axis_tilt(record, {.progress = progress_bar(command.output)});
   if (!solution)
-    throw Failure(status_of(solution.error(), Stage::computing),
-                  solution.error().at(command.file).message);
+    throw Failure(status_of(solution.error(), Stage::computing), solution.error().at(command.file));
   return std::move(solution).value();
 }
 
@@ -261,8 +260,7 @@ estimate::TiltSolution solve(const TiltCommand& command, report::TiltReport& rep
   const estimate::TiltRecord record = prepare(command, options, report.notes);
   auto solution = estimate::estimate_tilt(record, options);
   if (!solution)
-    throw Failure(status_of(solution.error(), Stage::computing),
-                  solution.error().at(command.file).message);
+    throw Failure(status_of(solution.error(), Stage::computing), solution.error().at(command.file));
   // With three axes the direction does not depend on the magnitude of gravity.
   if (solution->axes < 3)
     report.notes.insert(report.notes.end(), of_gravity.begin(), of_gravity.end());

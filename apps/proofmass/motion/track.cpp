@@ -170,8 +170,7 @@ void expect_sense(const TrackCommand& command) {
 
 // A list that does not match the recording is reported as an error of the list.
 void need_inside(const Status& inside, const std::string& file) {
-  if (!inside)
-    throw Failure(status_of(inside.error(), Stage::reading), inside.error().at(file).message);
+  if (!inside) throw Failure(status_of(inside.error(), Stage::reading), inside.error().at(file));
 }
 
 void read_lists(const TrackCommand& command, const Recording& recording, TrackOptions& options) {
@@ -313,7 +312,7 @@ estimate::TrackSolution solve_track(const std::string& file,
                                     const TrackOptions& options) {
   auto solution = estimate::estimate_track(sensor, options);
   if (!solution)
-    throw Failure(status_of(solution.error(), Stage::computing), solution.error().at(file).message);
+    throw Failure(status_of(solution.error(), Stage::computing), solution.error().at(file));
   return std::move(solution).value();
 }
 

@@ -185,7 +185,7 @@ void update_sensor(const TuneCommand& command,
     noise.push_back(std::move(own));
   }
   const Status status = sensor::update_sensor_file(command.update_sensor, noise);
-  if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error().message);
+  if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error());
 }
 
 // The sensor file's noise of each channel, for --start-at-sensor.

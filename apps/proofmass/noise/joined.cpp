@@ -89,7 +89,7 @@ std::vector<Joined> begin(const Part& first, NoiseOptions options, std::size_t e
   for (const RestChannel& one : first.rest.channels) {
     options.rate_hz = one.rate_hz;
     Result<NoiseStream> stream = NoiseStream::start(options, expected_samples);
-    if (!stream) throw Failure(usage, stream.error().at(one.file).message);
+    if (!stream) throw Failure(usage, stream.error().at(one.file));
     NoiseChannel channel{.rest = one, .shown = {}};
     channel.rest.title = one.name;
     channel.rest.series.clear();

@@ -199,7 +199,7 @@ void analyse(NoiseChannel& channel, NoiseOptions options) {
   Result<NoiseAnalysis> found = characterise::analyse_noise(channel.rest.series, options);
   // Invalid options, for this channel or for any.
   if (!found && found.error().code == Errc::invalid_argument) {
-    throw Failure(usage, found.error().at(channel.shown.name).message);
+    throw Failure(usage, found.error().at(channel.shown.name));
   }
   if (found)
     channel.shown.analysis = std::move(found).value();
@@ -243,7 +243,7 @@ void update_noise(const std::string& path, const std::vector<NoiseChannel>& chan
   }
   if (noise.empty()) return;
   const Status status = sensor::update_sensor_file(path, noise);
-  if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error().message);
+  if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error());
 }
 
 }  // namespace

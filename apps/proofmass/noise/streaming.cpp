@@ -37,7 +37,7 @@ std::vector<Stream> start(const PieceSource& source,
     const Unit& unit = source.head().channels[place].unit;
     Result<NoiseStream> started = NoiseStream::start(
         options, static_cast<std::size_t>(source.expected_samples().value_or(0)));
-    if (!started) throw Failure(usage, started.error().at(source.head().source).message);
+    if (!started) throw Failure(usage, started.error().at(source.head().source));
     streams.push_back({place, unit, si_unit(unit), std::move(started).value(), {}});
   }
   return streams;
@@ -46,7 +46,7 @@ std::vector<Stream> start(const PieceSource& source,
 void hold(const Status& status, const std::string& file) {
   if (status) return;
   const Error error = status.error().at(file);
-  throw Failure(status_of(error, Stage::reading), error.message);
+  throw Failure(status_of(error, Stage::reading), error);
 }
 
 Block part_of(const Block& block, const std::vector<Stream>& streams) {

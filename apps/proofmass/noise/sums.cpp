@@ -39,7 +39,7 @@ std::string options_of_sums(const NoiseCommand& command) {
 
 NoiseStream stream_at(const NoiseOptions& options, const SumsPlace& place, std::size_t channel) {
   Result<NoiseStream> stream = NoiseStream::start_part(options, place.of_channel(channel));
-  if (!stream) throw Failure(usage, stream.error().message);
+  if (!stream) throw Failure(usage, stream.error());
   return std::move(stream).value();
 }
 
@@ -94,7 +94,7 @@ RecordingSums read_sums(const std::string& path) {
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!file && text.empty()) throw Failure(bad_input, path + ": cannot be read");
   Result<RecordingSums> sums = fleet::sums_of_text(text);
-  if (!sums) throw Failure(bad_input, path + ": " + sums.error().message);
+  if (!sums) throw Failure(bad_input, sums.error().at(path));
   return std::move(sums).value();
 }
 
@@ -182,7 +182,7 @@ NoiseStream start_all(const NoiseOptions& options, const AllSums& all, std::size
   const SumsPlace& first = *all.parts.front().place;
   if (!first.as_samples) return stream_at(options, first, channel);
   Result<NoiseStream> stream = NoiseStream::start(options, all.total);
-  if (!stream) throw Failure(usage, stream.error().message);
+  if (!stream) throw Failure(usage, stream.error());
   return std::move(stream).value();
 }
 
@@ -196,7 +196,7 @@ JoinedSums start_channel(NoiseOptions options, const AllSums& all, std::size_t n
   rest.rate_hz = all.rate_hz;
   for (const RecordingSums& part : all.parts) {
     const auto place = fleet::matching_channel(part, first, number);
-    if (!place) throw Failure(usage, place.error().message);
+    if (!place) throw Failure(usage, place.error());
     joined.places.push_back(*place);
     const SummedChannel& one = part.channels[*place];
     if (rest.refused.empty() && !one.refused.empty())

@@ -317,7 +317,7 @@ report::RecordReport record(const RecordCommand& command,
   };
   auto summary =
       acquire::record(open, options, watch, make_estimate(command, columns, report.notes));
-  if (!summary) throw Failure(status_of(summary.error(), was_open), summary.error().message);
+  if (!summary) throw Failure(status_of(summary.error(), was_open), summary.error());
   report.summary = std::move(summary).value();
   if (stream != nullptr && guide != nullptr) stream->guide([&] { return guide->picture(); }, true);
   if (stream != nullptr) stream->ended(report.summary);

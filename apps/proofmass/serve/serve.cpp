@@ -143,8 +143,7 @@ void serve_folder(const ServeCommand& command) {
   if (is_live) {
     const Status watched = bench.watch(command.what, command.estimate);
     if (!watched)
-      throw Failure(status_of(watched.error(), Stage::reading),
-                    watched.error().at(command.what).message);
+      throw Failure(status_of(watched.error(), Stage::reading), watched.error().at(command.what));
   }
   const std::string link =
       fmt::format("http://{}:{}/?token={}", serve::in_link(command.listen), server->port(), token);

@@ -12,7 +12,7 @@ namespace proofmass::app {
 namespace {
 
 void keep(const Status& status) {
-  if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error().message);
+  if (!status) throw Failure(status_of(status.error(), Stage::writing), status.error());
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ ProcedureOptions procedure_options(const SimulateCommand& command) {
   if (!command.rig.empty()) {
     const Result<ProcedureOptions> read = simulate::read_procedure_file(command.rig, procedure);
     // Any error in the file is a faulty input.
-    if (!read) throw Failure(bad_input, read.error().message);
+    if (!read) throw Failure(bad_input, read.error());
     options = *read;
   }
   if (command.seed) options.seed = *command.seed;
@@ -99,7 +99,7 @@ void run_procedure(const SimulateCommand& command) {
   refuse_flags_of_the_rig(command);
   const ProcedureOptions options = procedure_options(command);
   const Status fits = simulate::check(options);
-  if (!fits) throw Failure(usage, fits.error().message);
+  if (!fits) throw Failure(usage, fits.error());
   if (command.print_config) return print_out(simulate::format_procedure_file(options));
   if (flags.output.empty())
     throw Failure(usage, "simulate: no --output: say where to, -o poses.csv");

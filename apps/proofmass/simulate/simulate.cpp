@@ -105,7 +105,7 @@ simulate::RigOptions rig_options(const SimulateCommand& command) {
   if (!command.rig.empty()) {
     const Result<simulate::RigOptions> read = simulate::read_rig_file(command.rig);
     // Any error in the file is a faulty input.
-    if (!read) throw Failure(bad_input, read.error().message);
+    if (!read) throw Failure(bad_input, read.error());
     options = *read;
   }
   set_speed(command, options.wheel.profile);
@@ -136,7 +136,7 @@ void run_simulate(const SimulateCommand& command) {
   const simulate::RigOptions options = rig_options(command);
   if (command.print_config) {
     const Status fits = simulate::check(options);
-    if (!fits) throw Failure(usage, fits.error().message);
+    if (!fits) throw Failure(usage, fits.error());
     print_out(simulate::format_rig_file(options));
     return;
   }

@@ -19,7 +19,7 @@ void keep_notes(const std::string& file, std::vector<Note> more, std::vector<Not
   const std::string name = report::file_name(file);
   for (Note& note : more) {
     const bool named = note.text.find(name) != std::string::npos;
-    notes.push_back({note.severity, named ? std::move(note.text) : name + ": " + note.text});
+    notes.push_back(note.at(named ? "" : name));
   }
 }
 

@@ -184,7 +184,7 @@ TumblePart read_rests(const Recording& recording,
         calibrate::dwell_outputs(channel.values, dwells, audit.channels[k].lsb.value_or(0.0));
     if (!means)
       throw Failure(status_of(means.error(), Stage::reading),
-                    means.error().at(channel.name).at(recording.source).message);
+                    means.error().at(channel.name).at(recording.source));
     for (std::size_t j = 0; j < dwells.size(); ++j) {
       out.values.push_back(means->mean[j] * factor);
       out.std.push_back(means->std[j] * factor);

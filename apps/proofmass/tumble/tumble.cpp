@@ -201,7 +201,7 @@ void update_sensor(const TumbleCommand& command,
   const sensor::MeasuredCalibration found = measured(report, readings, report.notes);
   if (std::none_of(found.scale.begin(), found.scale.end(), [](const auto& s) { return s; })) return;
   Result<std::vector<Note>> changes = sensor::update_calibration(command.update_sensor, found);
-  if (!changes) throw Failure(status_of(changes.error(), Stage::writing), changes.error().message);
+  if (!changes) throw Failure(status_of(changes.error(), Stage::writing), changes.error());
   for (Note& note : std::move(changes).value()) report.notes.push_back(std::move(note));
 }
 

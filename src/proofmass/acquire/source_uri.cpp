@@ -47,10 +47,11 @@ Result<SourceUri> SourceUri::parse(std::string_view text) {
   const std::string_view whole = uri.text_;
   const std::size_t colon = whole.find(':');
   if (colon == std::string_view::npos || !is_scheme(whole.substr(0, colon)))
-    return invalid(
-        fmt::format("{}: expected a source such as sim:, serial:/dev/ttyACM0 or "
-                    "iio:ip:HOST; record --list shows what is there",
-                    text));
+    return Error{Errc::invalid_argument,
+                 fmt::format("{}: expected a source such as sim:, serial:/dev/ttyACM0 or "
+                             "iio:ip:HOST",
+                             text),
+                 {Advice{"list"}}};
   uri.scheme_ = whole.substr(0, colon);
   std::string_view rest = whole.substr(colon + 1);
   const std::size_t mark = rest.find('?');

@@ -100,8 +100,9 @@ Status check_rows(const EncoderRecording& recording, double turns) {
   if (!(turns >= fewest_turns))
     return Error{Errc::too_few_samples,
                  fmt::format("{}: the wheel turns {:.1f} times by the encoder; expected {:g} or "
-                             "more: check --counts-per-turn, or record longer",
-                             recording.name, turns, fewest_turns)};
+                             "more: check the counts per turn, or record longer",
+                             recording.name, turns, fewest_turns),
+                 {Advice{"counts-per-turn"}}};
   const double each = static_cast<double>(recording.encoder.time_s.size()) / turns;
   if (each < fewest_fixes_a_turn)
     return Error{Errc::too_few_samples,
@@ -151,8 +152,9 @@ Result<EncoderRound> one_round(const EncoderRecording& recording,
   if (!follows_gravity(round.fit, encoder::layout_of(recording)))
     return Error{Errc::not_observable,
                  recording.name +
-                     ": the accelerometers do not follow gravity at the encoder's angle: check "
-                     "--counts-per-turn and --unit; the axle must be level"};
+                     ": the accelerometers do not follow gravity at the encoder's angle: check the "
+                     "counts per turn and the unit; the axle must be level",
+                 {Advice{"counts-per-turn"}, Advice{"unit"}}};
   round.offsets = offsets_of(recording, round.rows, round.fit, options.gravity_mps2);
   return round;
 }
@@ -163,7 +165,7 @@ void add_notes(const EncoderRecording& recording,
   if (!recording.has_index)
     out.notes.emplace_back(
         "without an index pulse the phases count from where this recording's count is zero; they "
-        "hold elsewhere only if the encoder is absolute or keeps its count (--index)");
+        "hold elsewhere only if the encoder is absolute or keeps its count");
   if (out.nonlinearity > given.nonlinearity)
     out.notes.push_back(fmt::format(
         "the accelerometers' output has harmonics that neither gravity nor the encoder explains: "

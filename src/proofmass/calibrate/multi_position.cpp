@@ -254,15 +254,15 @@ Status check_acceleration_unit(View<Pose> poses, double gravity_mps2) {
   const double length = median(lengths).value_or(gravity_mps2);
   constexpr double near = 0.25;
   const auto wrong = [&](const char* meaning, const char* unit) {
-    return Error{Errc::invalid_argument,
-                 fmt::format("at rest the norm is {:.3g} m/s^2, which is gravity in {}: "
-                             "give --unit {}",
-                             length, meaning, unit)};
+    return Error{
+        Errc::invalid_argument,
+        fmt::format("at rest the norm is {:.3g} m/s², which is gravity in {}", length, meaning),
+        {Advice{"unit", unit}}};
   };
   if (std::abs(length - 1.0) < near) return wrong("g", "g");
   if (std::abs(length / 1000.0 - 1.0) < near) return wrong("mg", "mg");
   if (std::abs(length / (gravity_mps2 * gravity_mps2) - 1.0) < near)
-    return wrong("m/s^2 interpreted as g", "m/s2");
+    return wrong("m/s² interpreted as g", "m/s2");
   return Done{};
 }
 

@@ -23,9 +23,10 @@ bool overlaps(Statistic statistic) {
 
 Error whole_only(const std::string& what, const std::string& instead) {
   return {Errc::invalid_argument,
-          fmt::format("{} only of a recording that fits into memory: cut it with --from and --to, "
+          fmt::format("{} only of a recording that fits into memory: analyse a part, "
                       "or {}",
-                      what, instead)};
+                      what, instead),
+          {Advice{"from"}, Advice{"to"}}};
 }
 
 // Requested times may be any number of samples, including those not shortened by halving.
@@ -121,10 +122,12 @@ Result<NoiseAnalysis> NoiseStream::finish(const StreamEnd& end) {
   analysis.stationarity = stationarity_.finish(options.rate_hz, analysis.lines.lines);
   note_stationarity(analysis);
   note_missing(analysis, variances.left_out);
-  analysis.notes.push_back({Severity::warning,
-                            "outliers and steps were not searched for, and the stability of lines "
-                            "was not tested: the recording was analysed in pieces (cut it with "
-                            "--from and --to for both)"});
+  analysis.notes.push_back(
+      {Severity::warning,
+       "outliers and steps were not searched for, and the stability of lines "
+       "was not tested: the recording was analysed in pieces; both are possible for "
+       "a part of it",
+       {Advice{"from"}, Advice{"to"}}});
   note_resolution(analysis, overview_.short_term_std());
   note_model(analysis);
   return analysis;

@@ -20,6 +20,12 @@ enum class Severity { info, warning, bad };
 struct Note {
   Severity severity = Severity::info;
   std::string text;  ///< "Acc_X: 3 values of 3e34 at 12.40 s … 12.43 s (lines 1490 … 1493)"
+  std::vector<Advice> advice{};
+
+  /// The same note with outer context, as Error::at; unchanged if `where` is empty.
+  [[nodiscard]] Note at(std::string_view where) const {
+    return where.empty() ? *this : Note{severity, std::string(where) + ": " + text, advice};
+  }
 };
 
 /// One column of a recording, in the unit in which it was recorded.
@@ -33,7 +39,7 @@ struct Channel {
 enum class TimeSource {
   stamps,      ///< a time column of the file
   counter,     ///< a sample counter with a known rate
-  given_rate,  ///< --rate, or a rate in the file's header
+  given_rate,  ///< as requested, or a rate in the file's header
   none,        ///< no time information: time is the sample number and rate_hz is 0
 };
 

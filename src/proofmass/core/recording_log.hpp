@@ -39,6 +39,7 @@ struct RecordEvent {
   double duration_s = 0.0;  ///< length of a gap; 0 for other events
   std::uint64_t rows = 0;   ///< rows lost, as far as known
   std::string text;         ///< one sentence for the user
+  std::vector<Advice> advice{};
 };
 
 /// Relation of the recording's clock to the host's: host = start + (1 + drift) t.

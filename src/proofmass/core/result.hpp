@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "proofmass/core/contract.hpp"
 
@@ -24,26 +25,34 @@ enum class Errc {
   not_observable,  ///< not identifiable from the data, whatever the computation
 };
 
+/// An option of the analysis that would resolve a finding or a failure: "radius", or "gravity" with
+/// the value "removed". Each front end spells it in its own way.
+struct Advice {
+  std::string option;
+  std::string value{};
+};
+
 /// A failure caused by data or by the outside world. A bug is not an Error: see contract.hpp.
 struct Error {
   Errc code;
   std::string message;  ///< one line for the user: the failure and the limit that was exceeded
+  std::vector<Advice> advice{};
 
   /// The same error with outer context: "line 12: bad number" at "wheel.csv" becomes "wheel.csv:
   /// line 12: bad number".
   [[nodiscard]] Error at(std::string_view where) const {
-    return {code, std::string(where) + ": " + message};
+    return {code, std::string(where) + ": " + message, advice};
   }
 };
 
 /// An Error as an exception, for callers that use value() without a check.
 class ResultError : public std::runtime_error {
  public:
-  explicit ResultError(const Error& error) : std::runtime_error(error.message), code_(error.code) {}
-  [[nodiscard]] Errc code() const { return code_; }
+  explicit ResultError(Error error) : std::runtime_error(error.message), error_(std::move(error)) {}
+  [[nodiscard]] const Error& error() const { return error_; }
 
  private:
-  Errc code_;
+  Error error_;
 };
 
 /// Either a T or the Error that prevented it: the part of std::expected that we use, made safe for

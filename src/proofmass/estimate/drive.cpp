@@ -344,7 +344,8 @@ void warn_of_steering(const std::vector<DriveWheel>& wheels,
           {Severity::warning,
            wheels[i].sensor.name + " and " + wheels[j].sensor.name +
                ": their gyroscopes turned by different angles, as wheels of a steered and of an "
-               "unsteered axle do: state those of the steered axle with --front"});
+               "unsteered axle do: state those of the steered axle",
+           {Advice{"front"}}});
       return;
     }
   }
@@ -387,10 +388,13 @@ Fitted fit_best(const std::vector<DriveWheel>& wheels,
              (none ? std::string("all are taken as unsteered")
                    : names_of(wheels, chosen) + " are taken to be") +
              ", and the heading is off by the change of the steering angle if they are not; state "
-             "them with --front"});
+             "them",
+         {Advice{"front"}}});
   if (choices.size() > 1 && best > first)
-    solution.notes.push_back({Severity::info, "the motion shows that " + names_of(wheels, chosen) +
-                                                  " are on the steered axle; --front states it"});
+    solution.notes.push_back(
+        {Severity::info,
+         "the motion shows that " + names_of(wheels, chosen) + " are on the steered axle",
+         {Advice{"front"}}});
   return fit_path(all.recorded, all.setting, Effort::full, options.progress);
 }
 

@@ -101,9 +101,9 @@ class LiveTilt final : public LiveAnalysis {
     const double usual = median(norms).value_or(0.0), g = options_.tilt.gravity_mps2.value;
     if (usual > 0.5 * g && usual < 2.0 * g) return;
     notes_.push_back({Severity::bad, options_.accelerometer.name + ": the force has a median of " +
-                                         decimal(usual) + " m/s^2 where gravity is " + decimal(g) +
-                                         ": its unit is another, or gravity was taken out of it; "
-                                         "the angles mean nothing"});
+                                         decimal(usual) + " m/s² where gravity is " + decimal(g) +
+                                         ": its unit is another, or gravity was removed; "
+                                         "the angles are meaningless"});
   }
 
   void give(double time_s, Rows& out) {

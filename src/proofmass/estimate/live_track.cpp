@@ -191,7 +191,8 @@ class LiveTrack final : public LiveAnalysis {
     constexpr double clear_share = 0.8;
     if (found.share < clear_share)
       say("only " + std::to_string(std::lround(100.0 * found.share)) +
-          " % of the first motion is along one direction: give the axis (--axis)");
+              " % of the first motion is along one direction: state the axis",
+          {Advice{"axis"}});
     begin();
     for (const LiveReading& reading : std::exchange(gathered_, {})) filter(reading, out);
   }
@@ -290,7 +291,9 @@ class LiveTrack final : public LiveAnalysis {
     for (std::size_t i = 0; i < values.size(); ++i) out.channels[i].push_back(values[i]);
   }
 
-  void say(std::string text) { notes_.push_back({Severity::warning, std::move(text)}); }
+  void say(std::string text, std::vector<Advice> advice = {}) {
+    notes_.push_back({Severity::warning, std::move(text), std::move(advice)});
+  }
 
   LiveTrackOptions options_;
   LiveInstants instants_;

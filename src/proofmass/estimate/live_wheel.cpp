@@ -185,8 +185,8 @@ class LiveWheel final : public LiveAnalysis {
     if (saw_turn_ && !filter_->knows_places())
       say_once({Severity::warning,
                 "where the sensors are on the wheel is not known: until its speed has changed the "
-                "angle is less sure" +
-                    std::string(options_.wheel.radius_m ? "" : "; give --radius")});
+                "angle is less certain",
+                options_.wheel.radius_m ? std::vector<Advice>{} : std::vector{Advice{"radius"}}});
   }
 
   void say_once(const Note& note) {

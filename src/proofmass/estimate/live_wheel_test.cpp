@@ -207,7 +207,8 @@ TEST(LiveWheel, ReportsThatThereIsNoWheel) {
 
 TEST(LiveWheel, ReportsThatTheRadiusIsUnknown) {
   const Drive slow{{0.3, 11 * rpm}, {{12.0, 11 * rpm}}};
-  EXPECT_TRUE(follow(one_sensor(slow), options_for(1, std::nullopt)).fed.says("give --radius"));
+  EXPECT_TRUE(
+      follow(one_sensor(slow), options_for(1, std::nullopt)).fed.says("angle is less certain"));
 }
 
 TEST(LiveWheel, AStepAllocatesNothingOnceTheWheelIsFound) {

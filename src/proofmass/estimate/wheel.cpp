@@ -66,8 +66,9 @@ void add_distance(const WheelOptions& options, WheelSolution& solution) {
   }
   if (!radius) {
     solution.notes.push_back({Severity::warning,
-                              "distance_m: no rim radius was given (--rim-radius), and the "
-                              "recording does not determine the sensor's own"});
+                              "no distance: no rim radius was given, and the recording does not "
+                              "determine the sensor's own",
+                              {Advice{"rim-radius"}}});
     return;
   }
   solution.distance_m = Uncertain{path_rad * radius->value,
@@ -104,7 +105,7 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
         readings, plain->places_m, series.angle_rad.front(), series.speed_radps.front());
   if (series.double_integral_angle_rad.empty()) {
     solution.double_integration.note =
-        "needs the radius of every sensor, which this recording does not determine: give --radius";
+        "needs the radius of every sensor, which this recording does not determine";
     return;
   }
   solution.double_integration.turns = Uncertain{
@@ -112,7 +113,7 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
           rad_per_turn,
       0.0};
   solution.double_integration.note =
-      "starts from the smoother's first angle and speed; an error of b m/s^2 grows as b t^2 / (2 "
+      "starts from the smoother's first angle and speed; an error of b m/s² grows as b t² / (2 "
       "r)";
   if (plain->taken)
     solution.double_integration.note += "; the sensors' first axes are assumed radial";
@@ -151,10 +152,11 @@ void add_sensor(const WheelSensor& sensor,
     solution.rejected.push_back(std::move(stretch));
   }
   if (single.prepared.plane.assumed)
-    solution.notes.push_back(
-        {Severity::warning, sensor.name +
-                                ": the wheel hardly turned, so its axle cannot be found; "
-                                "took the most level of the sensor's axes (--spin-axis)"});
+    solution.notes.push_back({Severity::warning,
+                              sensor.name +
+                                  ": the wheel hardly turned, so its axle cannot be found; "
+                                  "the most level of the sensor's axes is assumed",
+                              {Advice{"spin-axis"}}});
 }
 
 /// Epochs at which the gate rejected every available channel, as intervals.
@@ -232,11 +234,12 @@ void note_travel(const WheelReadings& readings, WheelSolution& solution) {
        "apparent gravity by rolling radius x angular acceleration / g: the rolling radius is "
        "assumed "
        "as " +
-           std::to_string(std::lround(rolling.value * 1e3)) + " mm +- " +
+           std::to_string(std::lround(rolling.value * 1e3)) + " mm ± " +
            std::to_string(std::lround(rolling.std * 1e3)) +
            " mm, which makes the angle uncertain by up to " +
            std::to_string(static_cast<int>(std::ceil(lean_deg))) +
-           " degrees during acceleration; --rolling-radius reduces this (0 for a bench)"});
+           " degrees during acceleration; the rolling radius reduces this (0 for a bench)",
+       {Advice{"rolling-radius"}}});
 }
 
 /// Errors: invalid_argument (a radius so far from the recording's that its unit must be wrong).
@@ -250,10 +253,10 @@ Status check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolut
     const auto in_mm = [](double value_m) {
       return std::to_string(std::lround(std::ceil(value_m * 1e3)));
     };
-    const std::string text = solution.sensors[s].name + ": --radius " +
-                             std::to_string(std::lround(*options.radius_m * 1e3)) + " mm +- " +
+    const std::string text = solution.sensors[s].name + ": the given radius of " +
+                             std::to_string(std::lround(*options.radius_m * 1e3)) + " mm ± " +
                              in_mm(given_std) + " mm contradicts the recording's " +
-                             std::to_string(std::lround(found.value * 1e3)) + " mm +- " +
+                             std::to_string(std::lround(found.value * 1e3)) + " mm ± " +
                              in_mm(found.std) + " mm: ";
     if (*options.radius_m > another_unit * (std::abs(found.value) + 4.0 * found.std))
       return Error{Errc::invalid_argument, text + "it is expected in metres, 0.1 for 100 mm"};

@@ -13,7 +13,7 @@
 namespace proofmass::fleet {
 namespace {
 
-constexpr std::string_view sums_magic = "proofmass-noise-sums 1 ";
+constexpr std::string_view sums_magic = "proofmass-noise-sums 2 ";
 // Read as another number on a machine with another byte order.
 constexpr std::uint64_t byte_order = 0x0102030405060708;
 constexpr std::string_view base64_digits =
@@ -118,6 +118,12 @@ void exchange(StateBytes& bytes, Note& note) {
   }
   note.severity = static_cast<Severity>(severity);
   bytes(note.text);
+  constexpr std::size_t least_bytes = 16;
+  note.advice.resize(bytes.size(note.advice.size(), least_bytes));
+  for (Advice& one : note.advice) {
+    bytes(one.option);
+    bytes(one.value);
+  }
 }
 
 void exchange(StateBytes& bytes, RecordingSums& sums) {
@@ -142,7 +148,7 @@ Error corrupt_sums(const char* what) {
   return {Errc::corrupt, fmt::format("sums of noise: {}: delete it and run the fleet again", what)};
 }
 
-// "proofmass-noise-sums 1 KEY SHA256 PLACE CHARACTERS CHECKSUM\n"
+// "proofmass-noise-sums 2 KEY SHA256 PLACE CHARACTERS CHECKSUM\n"
 struct HeadLine {
   SumsHead head;
   std::size_t length = 0;      // with the end of the line

@@ -63,8 +63,8 @@ Result<std::unique_ptr<TableFile>> open_tables(std::unique_ptr<ByteSource> bytes
   const bool is_nameless = tables.size() == 1 && tables.front().name.empty();
   if (!options.variables.empty() && !format->has_variables && is_nameless)
     return Error{Errc::invalid_argument,
-                 "has one table only and nothing to choose from: --variable is for files of "
-                 "several, as MAT, HDF5, TDMS and MCAP have"};
+                 "has one table only and nothing to choose from: a variable is chosen in "
+                 "files of several, as MAT, HDF5, TDMS and MCAP have"};
   return file;
 }
 

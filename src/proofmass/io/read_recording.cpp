@@ -65,9 +65,10 @@ Result<ChosenTables> chosen_tables_of(const TableFile& file, const ReadOptions& 
   if (chosen.tables.size() > 1 && !options.resample)
     return Error{
         Errc::invalid_argument,
-        fmt::format("{} and {} have each a clock of their own: name one of them, or give "
-                    "--resample HZ to bring them together",
-                    file.tables()[chosen.tables[0]].name, file.tables()[chosen.tables[1]].name)};
+        fmt::format("{} and {} have each a clock of their own: name one of them, or "
+                    "resample them to a common rate",
+                    file.tables()[chosen.tables[0]].name, file.tables()[chosen.tables[1]].name),
+        {Advice{"resample"}}};
   return chosen;
 }
 

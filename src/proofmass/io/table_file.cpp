@@ -142,10 +142,10 @@ void note_the_others(std::span<const TableSummary> tables,
   for (std::size_t t = 0; t < tables.size(); ++t)
     is_open = is_open || (t != chosen && likeness == 2 && !tables[t].is_derived &&
                           likeness_to_accelerations(tables[t]) == likeness);
-  notes.push_back(
-      {is_open ? Severity::warning : Severity::info,
-       fmt::format("{} is read{}; also holds {}: --variable \"{}\"", tables[chosen].name,
-                   likeness > 0 ? ", having accelerations" : "", others, example)});
+  notes.push_back({is_open ? Severity::warning : Severity::info,
+                   fmt::format("{} is read{}; also holds {}", tables[chosen].name,
+                               likeness > 0 ? ", having accelerations" : "", others),
+                   {Advice{"variable", example}}});
 }
 
 }  // namespace

@@ -22,6 +22,14 @@ inline bool is_noted(const Recording& recording, std::string_view part) {
   return false;
 }
 
+/// Whether a note recommends the option.
+inline bool recommends(const Recording& recording, std::string_view option) {
+  for (const Note& note : recording.notes)
+    for (const Advice& one : note.advice)
+      if (one.option == option) return true;
+  return false;
+}
+
 /// All notes, for a test's message.
 inline std::string notes_of(const Recording& recording) {
   std::string all;

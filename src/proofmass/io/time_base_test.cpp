@@ -184,7 +184,7 @@ TEST(TimeBase, DoesNotTakePacketNumbersForTime) {
   ASSERT_TRUE(read.has_value());
   EXPECT_EQ(read->time.source, TimeSource::none);
   EXPECT_EQ(read->time.rate_hz, 0.0);
-  EXPECT_TRUE(is_noted(*read, "give --rate"));
+  EXPECT_TRUE(recommends(*read, "rate"));
 }
 
 TEST(TimeBase, GivesAColumnBackThatDoesNotAscend) {

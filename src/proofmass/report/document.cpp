@@ -40,8 +40,8 @@ void print(std::string& out, const std::vector<Note>& notes) {
   constexpr std::array words{"note", "warning", "bad data"};
   if (!notes.empty()) out += "\nNotes:\n";
   for (const Note& note : notes)
-    out +=
-        fmt::format("  - {}: {}\n", words.at(static_cast<std::size_t>(note.severity)), note.text);
+    out += fmt::format("  - {}: {}\n", words.at(static_cast<std::size_t>(note.severity)),
+                       with_flags(note));
 }
 
 // The labelled entries, including those in lists.

@@ -308,7 +308,7 @@ Document describe(const std::vector<InspectedFile>& files) {
     page.inputs.push_back(file.name);
     verdicts.push_back(name + ": " + verdict(file.audit));
     for (const Note& note : file.audit.notes)
-      page.notes.push_back({note.severity, (files.size() > 1 ? name + ": " : "") + note.text});
+      page.notes.push_back(note.at(files.size() > 1 ? name : ""));
     page.sections.push_back(file_section(file));
   }
   page.title = file_names(page.inputs);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "proofmass/core/version.hpp"
+#include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {
 namespace {
@@ -83,7 +84,7 @@ std::optional<Uncertain> scaled(const std::optional<Uncertain>& figure, double f
 std::vector<std::string> texts(const std::vector<Note>& notes, Severity least) {
   std::vector<std::string> found;
   for (const Note& note : notes) {
-    if (note.severity >= least) found.push_back(note.text);
+    if (note.severity >= least) found.push_back(with_flags(note));
   }
   return found;
 }

@@ -52,7 +52,7 @@ Fields event_fields(const RecordEvent& event) {
           field::number("start_s", event.time_s, {.meaning = "on the recording's clock"}),
           field::number("duration_s", event.duration_s, {.meaning = "of a gap"}),
           field::count("rows", event.rows, {.meaning = "samples lost, as far as it is known"}),
-          field::text("text", event.text)};
+          field::text("text", with_flags(event))};
 }
 
 Fields clock_fields(const ClockMap& clock) {
@@ -210,7 +210,7 @@ Table events_table(const std::string& name,
     table.caption += fmt::format(", the first {} of {}", grouped(events.size()), grouped(count));
   table.long_list = true;
   for (const RecordEvent& event : events)
-    table.rows.push_back({fixed(event.time_s, 2) + " s", event.text});
+    table.rows.push_back({fixed(event.time_s, 2) + " s", with_flags(event)});
   return table;
 }
 
@@ -231,7 +231,7 @@ std::vector<Table> record_tables(const RecordSummary& summary, const Fields& fie
 }  // namespace
 
 std::string event_words(const RecordEvent& event) {
-  return fmt::format("{} s: {}", fixed(event.time_s, 2), event.text);
+  return fmt::format("{} s: {}", fixed(event.time_s, 2), with_flags(event));
 }
 
 Document describe(const RecordReport& report) {

@@ -16,6 +16,18 @@ int decimals_for(double std) {
   return leading < 355.0 ? 1 - exponent : -exponent;  // 950 … 999 rounds up to one more digit
 }
 
+// " (--from, --to)"; a value with spaces in quotes.
+std::string flag_words(const std::vector<Advice>& advice) {
+  std::string flags;
+  for (const Advice& one : advice) {
+    flags += (flags.empty() ? "--" : ", --") + one.option;
+    if (one.value.empty()) continue;
+    const bool quoted = one.value.find(' ') != std::string::npos;
+    flags += fmt::format(" {1}{0}{1}", one.value, quoted ? "\"" : "");
+  }
+  return flags.empty() ? "" : " (" + flags + ")";
+}
+
 }  // namespace
 
 std::string with_std(const Uncertain& figure, std::string_view unit) {
@@ -89,6 +101,18 @@ std::string print_unit(std::string_view symbol) {
     if (at != std::string::npos) text.replace(at, root.size(), root == "sqrt(s)" ? "√s" : "√Hz");
   }
   return text;
+}
+
+std::string with_flags(const Note& note) {
+  return note.text + flag_words(note.advice);
+}
+
+std::string with_flags(const RecordEvent& event) {
+  return event.text + flag_words(event.advice);
+}
+
+std::string with_flags(const Error& error) {
+  return error.message + flag_words(error.advice);
 }
 
 std::string joined(const std::vector<std::string>& words) {

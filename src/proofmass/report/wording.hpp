@@ -8,6 +8,8 @@
 
 #include "proofmass/core/number_words.hpp"
 #include "proofmass/core/quantity.hpp"
+#include "proofmass/core/recording.hpp"
+#include "proofmass/core/recording_log.hpp"
 
 // Formatted figures. Independent of the process's locale: the decimal mark is a point.
 namespace proofmass::report {
@@ -47,6 +49,12 @@ using proofmass::significant;
 
 /// "m/s^2/sqrt(Hz)" as printed: "m/s²/√Hz".
 [[nodiscard]] std::string print_unit(std::string_view symbol);
+
+/// The text with the options that would help, as the program spells them: "the samples have neither
+/// time nor rate (--rate)".
+[[nodiscard]] std::string with_flags(const Note& note);
+[[nodiscard]] std::string with_flags(const Error& error);
+[[nodiscard]] std::string with_flags(const RecordEvent& event);
 
 /// "a, b and c".
 [[nodiscard]] std::string joined(const std::vector<std::string>& words);

@@ -73,6 +73,18 @@ TEST(PrintUnit, RaisesPowersAndDrawsRoots) {
   EXPECT_EQ(print_unit("V/sqrt(s)"), "V/√s");
 }
 
+TEST(WithFlags, NamesThoseThatHelp) {
+  EXPECT_EQ(with_flags(Note{Severity::info, "no rate"}), "no rate");
+  EXPECT_EQ(with_flags(Note{Severity::info, "no rate", {Advice{"rate"}}}), "no rate (--rate)");
+  EXPECT_EQ(
+      sentence(
+          Error{Errc::not_observable, "no rest", {Advice{"rests", "ends"}, Advice{"still"}}}.at(
+              "a.csv")),
+      "a.csv: no rest (--rests ends, --still)");
+  EXPECT_EQ(with_flags(Note{Severity::info, "also b", {Advice{"variable", "b c"}}}.at("f")),
+            "f: also b (--variable \"b c\")");
+}
+
 TEST(Joined, HasAndBeforeTheLast) {
   EXPECT_EQ(joined({}), "");
   EXPECT_EQ(joined({"a"}), "a");

@@ -152,7 +152,7 @@ void put_conditions(const MeasuredCalibration& measured,
     if (measured.gravity_mps2->std > 0.0) gravity.std = measured.gravity_mps2->std;
     if (!anew && calibration.gravity && calibration.gravity->si() != gravity.value)
       notes.push_back({Severity::warning,
-                       fmt::format("calibration.gravity was {} m/s^2 and is {} m/s^2 now: what was "
+                       fmt::format("calibration.gravity was {} m/s² and is {} m/s² now: what was "
                                    "not measured now stays as the former made it",
                                    calibration.gravity->si(), gravity.value)});
     calibration.gravity = std::move(gravity);

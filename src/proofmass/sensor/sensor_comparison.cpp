@@ -218,7 +218,7 @@ void note_electrical(const SensorModel& before,
     notes.push_back(
         {Severity::warning,
          "the electrical figures differ: they convert a recording in volts or counts to "
-         "other values in m/s^2, which the largest error does not include"});
+         "other values in m/s², which the largest error does not include"});
 }
 
 /// Notes circumstances that may explain changes of figures.
@@ -240,7 +240,7 @@ void note_circumstances(const SensorModel& before,
   if (std::abs(relative) > 1e-5)
     notes.push_back(
         {Severity::warning,
-         fmt::format("gravity was {:.6g} m/s^2 in OLD and {:.6g} m/s^2 in "
+         fmt::format("gravity was {:.6g} m/s² in OLD and {:.6g} m/s² in "
                      "NEW: at one location the scales differ by {:.2g} % due to this alone",
                      old_gravity->si(), new_gravity->si(), 100.0 * std::abs(relative))});
 }

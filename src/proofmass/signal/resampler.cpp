@@ -56,8 +56,9 @@ Status check(const TimeBase& time, std::size_t samples, ResampleMethod method, c
     if (!(time.stamps_s[k] >= time.stamps_s[k - 1]))
       return Error{Errc::corrupt,
                    fmt::format("cannot be resampled: time goes back at sample {}: cut it there, or "
-                               "give --rate",
-                               k)};
+                               "state the rate",
+                               k),
+                   {Advice{"rate"}}};
   return Done{};
 }
 

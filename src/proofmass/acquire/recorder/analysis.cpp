@@ -52,10 +52,10 @@ void RecordSession::take_estimates(std::chrono::milliseconds wait) {
     wait = std::chrono::milliseconds(0);
     keep_estimates();
     for (const Note& note : analysed_.notes)
-      report({EventKind::note, note.severity, analysed_.time_s, 0.0, 0, note.text});
+      report({EventKind::note, note.severity, analysed_.time_s, 0.0, 0, note.text, note.advice});
     if (!analysed_.failure) continue;
     report({EventKind::note, Severity::bad, analysed_.time_s, 0.0, 0,
-            "the estimates end here: " + analysed_.failure->message});
+            "the estimates end here: " + analysed_.failure->message, analysed_.failure->advice});
     analysis_.reset();
     columns_.clear();
   }

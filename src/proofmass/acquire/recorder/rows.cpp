@@ -7,8 +7,11 @@
 
 namespace proofmass::acquire {
 
-void RecordSession::report(EventKind kind, Severity severity, std::string text) {
-  report({kind, severity, line_->last_s(), 0.0, 0, std::move(text)});
+void RecordSession::report(EventKind kind,
+                           Severity severity,
+                           std::string text,
+                           std::vector<Advice> advice) {
+  report({kind, severity, line_->last_s(), 0.0, 0, std::move(text), std::move(advice)});
 }
 
 void RecordSession::report(const RecordEvent& event) {
@@ -18,7 +21,7 @@ void RecordSession::report(const RecordEvent& event) {
 }
 
 void RecordSession::report_notes(const std::vector<Note>& notes) {
-  for (const Note& note : notes) report(EventKind::note, note.severity, note.text);
+  for (const Note& note : notes) report(EventKind::note, note.severity, note.text, note.advice);
 }
 
 void RecordSession::keep(const Block& block, std::int64_t host_ns) {

@@ -64,7 +64,7 @@ class RecordSession {
   void rotate();
   void add_closed();
   [[nodiscard]] Status new_file(bool is_numbered);
-  void report(EventKind kind, Severity severity, std::string text);
+  void report(EventKind kind, Severity severity, std::string text, std::vector<Advice> advice = {});
   void report(const RecordEvent& event);
   void report_notes(const std::vector<Note>& notes);
 

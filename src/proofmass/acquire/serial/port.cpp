@@ -98,8 +98,9 @@ Error refusal(const std::string& device, int problem) {
     case ENOENT:
     case ENODEV:
     case ENXIO:
-      return because(
-          "there is no such device: is it plugged in? record --list shows those there are");
+      return Error{Errc::device,
+                   fmt::format("{}: there is no such device: is it plugged in?", device),
+                   {Advice{"list"}}};
     case EACCES:
     case EPERM:
       return because(

@@ -120,7 +120,7 @@ std::string reason_for(const DriftFit& fit,
     case DriftReason::shorter_than_resolved:
       return fmt::format(
           "settled within {:.3g} s, which is too short for blocks of {:.3g} s: "
-          "analyse only the beginning with --to",
+          "analyse only the beginning",
           fit.best_time_constant_s * 3.0, evidence.block_s());
   }
   return {};

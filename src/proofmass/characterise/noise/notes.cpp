@@ -56,10 +56,9 @@ void note_events(NoiseAnalysis& analysis, bool excluded) {
   const bool one = analysis.events.size() == 1;
   analysis.notes.push_back(
       {Severity::warning,
-       fmt::format(
-           "{0} {1} included in the figures but {1} not noise of the sensor: exclude {2} with "
-           "--exclude-events",
-           all, one ? "is" : "are", one ? "it" : "them")});
+       fmt::format("{0} {1} included in the figures but {1} not noise of the sensor: exclude {2}",
+                   all, one ? "is" : "are", one ? "it" : "them"),
+       {Advice{"exclude-events"}}});
 }
 
 void note_missing(NoiseAnalysis& analysis, std::size_t left_out) {

@@ -46,7 +46,7 @@ Status check_force(const TiltRecord& record, const TiltOptions& options, TiltSol
   const double usual = *median(norms), g = options.gravity_mps2.value;
   if (usual < 0.5 * g || usual > 2.0 * g)
     return Error{Errc::not_observable,
-                 "the force has a median of " + decimal(usual) + " m/s^2 where gravity is " +
+                 "the force has a median of " + decimal(usual) + " m/s² where gravity is " +
                      decimal(g) +
                      (usual < g ? ": gravity was removed from it, or its unit is another"
                                 : ": its unit is another, or it needs a calibration")};
@@ -137,9 +137,10 @@ Result<bool> is_moving(const TiltRecord& record,
   if (!timed)
     return Error{Errc::not_observable, "a moving base needs time: give a time column or the rate"};
   if (solution.axes < 3)
-    return Error{Errc::not_observable, "a moving base needs three axes, not " +
-                                           std::to_string(solution.axes) +
-                                           "; if it is still, give --base still"};
+    return Error{Errc::not_observable,
+                 "a moving base needs three axes, not " + std::to_string(solution.axes) +
+                     "; if it is still, state it",
+                 {Advice{"base", "still"}}};
   if (solution.samples < solution.unusable + fewest_moving)
     return Error{Errc::too_few_samples, "a moving base needs at least 50 measurements"};
   return true;

@@ -28,16 +28,18 @@ Mat<3> noise_of_one(const TiltRecord& record, const TiltRest& rest) {
 }
 
 Note change_note(const BiasChange& change, double off_mps2) {
-  const std::string widened = decimal(change.std_mps2, 4) + " m/s^2 (--bias-std states it)";
+  const std::string widened = decimal(change.std_mps2, 4) + " m/s²";
   if (change.probability > 0.95)
     return {Severity::warning,
             "at rest the force differs from gravity by " + decimal(off_mps2) +
-                " m/s^2, more than the calibration allows: the sensor has changed since, or it was "
+                " m/s², more than the calibration allows: the sensor has changed since, or it was "
                 "not at rest; each axis is taken to be off by " +
-                widened};
-  return {Severity::info,
-          "the bias may have changed since the calibration: each axis is taken to be off by " +
-              widened};
+                widened,
+            {Advice{"bias-std"}}};
+  return {
+      Severity::info,
+      "the bias may have changed since the calibration: each axis is taken to be off by " + widened,
+      {Advice{"bias-std"}}};
 }
 
 }  // namespace
@@ -75,13 +77,14 @@ bool judge_norm(TiltOptions& options, TiltSolution& solution) {
     solution.notes.push_back(
         {Severity::warning,
          "at rest the force differs from gravity by " + decimal(off) +
-             " m/s^2, and the accuracy of the calibration is unknown: each axis is assumed to be "
+             " m/s², and the accuracy of the calibration is unknown: each axis is assumed to be "
              "off by this amount; a sensor file gives a better value"});
   } else {
     solution.notes.push_back(
         {Severity::warning,
          "the accuracy of the calibration is unknown: standard deviations include only its noise, "
-         "while a bias of 0.1 m/s^2 tilts by 0.6 degrees; give --sensor or --bias-std"});
+         "while a bias of 0.1 m/s² tilts by 0.6 degrees",
+         {Advice{"sensor"}, Advice{"bias-std"}}});
   }
   solution.bias_std_mps2 = options.bias_std_mps2.value_or(0.0);
   return options.bias_std_mps2.has_value();

@@ -89,8 +89,9 @@ Result<bool> track_aided(const TrackSensor& sensor,
   if (attitude.stretches.size() != 1 || attitude.stretches.front().first != 0 ||
       attitude.stretches.front().last + 1 != sensor.time_s.size())
     return Error{Errc::not_observable,
-                 "a gap of more than a second parts the recording, and with it the attitude: take "
-                 "one part by --from and --to, or leave the gyroscope out by --no-gyro"};
+                 "a gap of more than a second parts the recording, and with it the attitude: "
+                 "analyse one part, or omit the gyroscope",
+                 {Advice{"from"}, Advice{"to"}, Advice{"no-gyro"}}};
   solution.axis = axis.direction;
   solution.axis_in_world = true;
   solution.travel_share = axis.share;

@@ -41,8 +41,8 @@ Result<std::vector<double>> project(const ParallelAccelerometer& sensor,
     const std::vector<double>& accel = sensor.accel_mps2[a];
     if (accel.empty())
       return Error{Errc::invalid_argument,
-                   "this sensor has no axis along the motion; give one with --axis "
-                   "that all sensors have"};
+                   "this sensor has no axis along the motion; state one that all sensors have",
+                   {Advice{"axis"}}};
     if (accel.size() != size)
       return Error{Errc::invalid_argument,
                    "the number of its samples differs from the first sensor's"};

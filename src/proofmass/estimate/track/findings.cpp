@@ -58,14 +58,15 @@ void note_scale(const TrackSignal& signal, const TrackOptions& options, TrackSol
   if (signal.resting_norm_mps2 && signal.gravity == GravityContent::present)
     solution.notes.push_back(
         {Severity::info,
-         text("not calibrated: the norm at rest is %.4g m/s^2, gravity %.4g; lengths are assumed "
+         text("not calibrated: the norm at rest is %.4g m/s², gravity %.4g; lengths are assumed "
               "accurate to %.2g %%",
               *signal.resting_norm_mps2, options.gravity_mps2, 100.0 * solution.scale_std)});
   else
-    solution.notes.push_back(
-        {Severity::info, text("not calibrated: the scale is assumed accurate "
-                              "to %.2g %%; --sensor FILE.toml gives a better value",
-                              100.0 * solution.scale_std)});
+    solution.notes.push_back({Severity::info,
+                              text("not calibrated: the scale is assumed accurate "
+                                   "to %.2g %%; a sensor file gives a better value",
+                                   100.0 * solution.scale_std),
+                              {Advice{"sensor"}}});
 }
 
 void note_turning(TrackSolution& solution) {
@@ -85,7 +86,8 @@ void note_alternatives(TrackSolution& solution) {
         {Severity::bad,
          "the integrated velocity is far from 0 at more than sixteen quiet intervals: rests cannot "
          "be distinguished from motion at constant speed, and no displacement is given. State when "
-         "the sensor was at rest with --still FILE"});
+         "the sensor was at rest",
+         {Advice{"still"}}});
   if (solution.alternatives.empty()) return;
   std::string all;
   for (const TrackAlternative& one : solution.alternatives) {
@@ -96,10 +98,10 @@ void note_alternatives(TrackSolution& solution) {
                 one.displacement_m.value, one.probability,
                 where.empty() ? "all of them rest" : ("in motion " + where).c_str());
   }
-  solution.notes.push_back(
-      {Severity::bad, "rests cannot be distinguished from motion at constant speed: " + all +
-                          "; no displacement is given. State when the sensor was at rest with "
-                          "--still FILE, or --rests ends"});
+  solution.notes.push_back({Severity::bad,
+                            "rests cannot be distinguished from motion at constant speed: " + all +
+                                "; no displacement is given. State when the sensor was at rest",
+                            {Advice{"still"}, Advice{"rests", "ends"}}});
 }
 
 // Errors in motion that are absent at rest are mostly gravity, as the sensor tilts.
@@ -113,7 +115,7 @@ void note_leaning(const TrackOptions& options, TrackSolution& solution) {
   if (solution.axis_in_world || lean_rad < noticed_rad) return;
   solution.notes.push_back(
       {Severity::warning,
-       text("in motion the errors are about %.2g m/s^2, as if the sensor tilted by %.2g deg: "
+       text("in motion the errors are about %.2g m/s², as if the sensor tilted by %.2g deg: "
             "the figures are approximate; a gyroscope would resolve it",
             accel, lean_rad / degree)});
 }
@@ -125,20 +127,19 @@ void note_jerk(TrackSolution& solution) {
        "the data behave like the derivative of an acceleration (jerk), not like an "
        "acceleration: integrated twice they differ from 0 while the sensor vibrates as in "
        "motion, and return to 0 at rest, as a velocity does; no displacement is given. If "
-       "they are accelerations, give --take-as-acceleration"});
+       "they are accelerations, state it",
+       {Advice{"take-as-acceleration"}}});
 }
 
 }  // namespace
 
 Error no_stop(const TrackSignal& signal) {
-  return {
-      Errc::not_observable,
-      (signal.stops.why_none.empty() ? std::string("the sensor was never at rest")
-                                     : signal.stops.why_none) +
-          "; without a rest the bias cannot be distinguished from motion: keep the sensor "
-          "still for 2 s before and after, state when it was at rest with --still FILE, or give "
-          "positions with "
-          "--fixes FILE"};
+  return {Errc::not_observable,
+          (signal.stops.why_none.empty() ? std::string("the sensor was never at rest")
+                                         : signal.stops.why_none) +
+              "; without a rest the bias cannot be distinguished from motion: keep the sensor "
+              "still for 2 s before and after, state when it was at rest, or give positions",
+          {Advice{"still"}, Advice{"fixes"}}};
 }
 
 Error hidden_motion() {
@@ -146,7 +147,8 @@ Error hidden_motion() {
       Errc::not_observable,
       "nearly all of the recording looks like rest, yet it integrates to a velocity far "
       "beyond that of its noise: slow motion cannot be distinguished from drift; state when the "
-      "sensor was at rest with --still FILE"};
+      "sensor was at rest",
+      {Advice{"still"}}};
 }
 
 double scale_std(const TrackSignal& signal,

@@ -10,8 +10,8 @@
 namespace proofmass::estimate {
 namespace {
 
-Error bad(std::string message) {
-  return {Errc::invalid_argument, std::move(message)};
+Error bad(std::string message, std::vector<Advice> advice = {}) {
+  return {Errc::invalid_argument, std::move(message), std::move(advice)};
 }
 
 std::string figure(double value) {
@@ -45,13 +45,13 @@ Result<GravityContent> gravity_content(double norm_mps2, double gravity_mps2) {
   const double share = norm_mps2 / gravity_mps2;
   if (std::abs(share - 1.0) < 0.1) return GravityContent::present;
   if (std::abs(norm_mps2 - 1.0) < 0.08)
-    return bad(
-        "at rest the readings are " + figure(norm_mps2) +
-        " m/s^2 long, which is gravity in g: give --unit g, or --gravity removed if they are "
-        "m/s^2 with an offset");
+    return bad("at rest the norm of the measurements is " + figure(norm_mps2) +
+                   " m/s², which is gravity in g, or an offset without gravity",
+               {Advice{"unit", "g"}, Advice{"gravity", "removed"}});
   if (std::abs(share / gravity_mps2 - 1.0) < 0.1)
-    return bad("at rest the readings are " + figure(norm_mps2) +
-               " m/s^2 long, which is gravity in m/s^2 interpreted as g: give --unit m/s2");
+    return bad("at rest the norm of the measurements is " + figure(norm_mps2) +
+                   " m/s², which is gravity in m/s² interpreted as g",
+               {Advice{"unit", "m/s2"}});
   if (share < 0.1) return GravityContent::removed;
   return GravityContent::unknown;
 }

@@ -113,7 +113,7 @@ std::string sentence(const Eigen::VectorXd& direction,
   const std::string whose = one_sensor ? sensors[sensor].name : "the two sensors";
   if (place && radius_given)
     return "the mounting azimuth and the biases of " + whose +
-           " are not separable at one speed (omega^2 R): record a second speed";
+           " are not separable at one speed (ω²R): record a second speed";
   const std::string what = joined(names) + " of " + whose;
   if (place && bias) return what + " are not separable at one speed: record a second speed";
   if (place)

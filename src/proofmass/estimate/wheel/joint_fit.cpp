@@ -169,14 +169,17 @@ Result<Single> fit_single(const WheelSensor& sensor,
   }
   if (unsure) return *std::move(unsure);
   if (followed)
-    return Error{Errc::not_observable, sensor.name +
-                                           ": the angle was lost: the wheel turns by more than an "
-                                           "eighth of a turn between samples; record at a higher "
-                                           "rate, or cut the recording by --from and --to"};
+    return Error{Errc::not_observable,
+                 sensor.name +
+                     ": the angle was lost: the wheel turns by more than an "
+                     "eighth of a turn between samples; record at a higher "
+                     "rate, or analyse a part of the recording",
+                 {Advice{"from"}, Advice{"to"}}};
   return Error{Errc::not_observable,
                sensor.name +
                    ": no rotation of gravity in the plane of the wheel (axle vertical, "
-                   "data not in m/s^2, or not a wheel); check --unit and --spin-axis"};
+                   "data not in m/s², or not a wheel)",
+               {Advice{"unit"}, Advice{"spin-axis"}}};
 }
 
 Result<Single> fit_single(const WheelSensor& sensor, FitDepth depth, const WheelOptions& options) {

@@ -71,7 +71,8 @@ Status LiveInstants::check(const Block& samples) const {
         return Error{Errc::invalid_argument, vector.channels.name + ": there is no channel " +
                                                  std::to_string(*channel) + " in the samples"};
   if (samples.stamps_s.empty() && !(clock_.rate_hz > 0.0))
-    return Error{Errc::invalid_argument, "the samples have neither time nor rate: give --rate"};
+    return Error{
+        Errc::invalid_argument, "the samples have neither time nor rate", {Advice{"rate"}}};
   return Done{};
 }
 

@@ -48,8 +48,8 @@ std::vector<Note> notes_of(const std::vector<WheelSensor>& sensors,
       notes.push_back({Severity::warning,
                        sensors[s].name +
                            ": the wheel hardly turns yet: took the most level of the sensor's axes "
-                           "for its axle; it is found once the wheel has turned round (or give "
-                           "--spin-axis)"});
+                           "for its axle; it is found once the wheel has turned round",
+                       {Advice{"spin-axis"}}});
   return notes;
 }
 

@@ -132,7 +132,8 @@ Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
     return Error{
         Errc::not_observable,
         "the force changes along one direction only: a wheel that rocks, or one whose axle is "
-        "upright; give --spin-axis, or record a whole turn"};
+        "upright; state the axle, or record a whole turn",
+        {Advice{"spin-axis"}}};
   }
   Axis axis{spread.vectors(0, 0), spread.vectors(1, 0), spread.vectors(2, 0)};
   if (axis[largest(axis)] < 0.0) axis = scaled(axis, -1.0);

@@ -140,8 +140,9 @@ class OneSensor final : public RecordingReader {
     recording.notes.push_back(
         {Severity::info,
          fmt::format("several sensors with rows of their own: {} rows without a figure of these "
-                     "channels are left out, and with them {}: --channel reads another",
-                     others_, left_out_)});
+                     "channels are left out, and with them {}: choose another channel to read it",
+                     others_, left_out_),
+         {Advice{"channel"}}});
     if (joined_ > 0)
       recording.notes.push_back(
           {Severity::info,

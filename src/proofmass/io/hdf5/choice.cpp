@@ -241,7 +241,8 @@ class Chooser {
       if (table.array->is_complex)
         add(Severity::warning, table.array->path + " is complex: its real part is read");
     if (const std::string rest = others(); !rest.empty())
-      add(Severity::info, fmt::format("also in the file: {}; --dataset NAME reads another", rest));
+      choice.notes.push_back(
+          {Severity::info, fmt::format("also in the file: {}", rest), {Advice{"dataset"}}});
     if (catalogue_.is_cut)
       add(Severity::warning, fmt::format("of the objects in the file only the first {} were "
                                          "looked at",

@@ -167,7 +167,7 @@ TEST_P(FolderAndZip, XimuWithoutEitherAsksForTheRate) {
   const auto read = this->read({{"00000_CalInertialAndMag.csv", ximu_table(100)}});
   ASSERT_TRUE(read.has_value()) << read.error().message;
   EXPECT_EQ(read->time.rate_hz, 0.0);
-  EXPECT_TRUE(is_noted(*read, "give --rate")) << notes_of(*read);
+  EXPECT_TRUE(recommends(*read, "rate")) << notes_of(*read);
 }
 
 std::string logged(double x, double y, double z) {

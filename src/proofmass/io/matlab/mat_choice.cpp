@@ -204,8 +204,7 @@ class Chooser {
     used.insert(choice.start);
     if (const std::string others = contents(catalogue_, used); !others.empty())
       choice.notes.push_back(
-          {Severity::info,
-           fmt::format("also in the file: {}; --variable NAME reads another", others)});
+          {Severity::info, fmt::format("also in the file: {}", others), {Advice{"variable"}}});
     if (catalogue_.is_cut)
       choice.notes.push_back(
           {Severity::warning, fmt::format("of the arrays in the file only the first {} were "

@@ -208,7 +208,7 @@ void settle_by_gravity(Recording& recording, const Triad& triad) {
   Severity severity = Severity::info;
   if (symbol.empty() && quiet.whole_numbers && std::isfinite(quiet.spread)) {
     symbol = "counts";
-    why += ", which is neither g, mg nor m/s^2, in whole numbers";
+    why += ", which is neither g, mg nor m/s², in whole numbers";
   } else if (symbol == "mg" && quiet.whole_numbers) {
     severity = Severity::warning;
     why += " (counts of 1/1024 g would look alike)";
@@ -218,12 +218,12 @@ void settle_by_gravity(Recording& recording, const Triad& triad) {
   if (symbol.empty()) {
     recording.notes.push_back(
         {Severity::warning,
-         fmt::format("{}: unit not known: {}, which is neither g, mg nor m/s^2; give --unit", names,
-                     why)});
+         fmt::format("{}: unit not known: {}, which is neither g, mg nor m/s²", names, why),
+         {Advice{"unit"}}});
     return;
   }
   recording.notes.push_back(
-      {severity, fmt::format("{}: unit taken to be {}: {}; --unit overrides", names, symbol, why)});
+      {severity, fmt::format("{}: unit taken to be {}: {}", names, symbol, why), {Advice{"unit"}}});
 }
 
 /// Checks a given unit against a header with another: at rest, gravity decides. Errors:
@@ -242,11 +242,11 @@ Status check_given_unit(const Recording& recording, const Unit& given) {
     if (std::isfinite(quiet.spread) && is_gravity(unit) && !is_gravity(given))
       return Error{
           Errc::invalid_argument,
-          fmt::format("--unit {} contradicts the header's {} of {}: in the quietest second "
-                      "the axes add up to {}, which is gravity in {}: leave it out, or give "
-                      "--unit {}",
+          fmt::format("the unit {} contradicts the header's {} of {}: in the quietest second "
+                      "the axes add up to {}, which is gravity in {}: omit it, or correct it",
                       given.symbol, unit.symbol, axes.front()->name, in_words(quiet.norm),
-                      unit.symbol, unit.symbol == "m/s^2" ? "m/s2" : unit.symbol)};
+                      unit.symbol),
+          {Advice{"unit", unit.symbol == "m/s^2" ? "m/s2" : unit.symbol}}};
   }
   return Done{};
 }

@@ -45,7 +45,7 @@ TEST(ChannelUnits, CallsWholeNumbersCounts) {
 TEST(ChannelUnits, SaysWhereItCannotTell) {
   const auto read = read_text(at_rest("t (s),ax,ay,az", 3.3));
   EXPECT_EQ(read->channels[0].unit.quantity, Quantity::unknown);
-  EXPECT_TRUE(is_noted(*read, "give --unit")) << notes_of(*read);
+  EXPECT_TRUE(recommends(*read, "unit")) << notes_of(*read);
 }
 
 TEST(ChannelUnits, SaysHowItTold) {

@@ -85,8 +85,9 @@ std::vector<Note> notes_on_rate(const TimeBase& base,
   notes.push_back(
       {Severity::warning,
        fmt::format("{}: the stamps say {} Hz, the file's preamble {} Hz: one of them is "
-                   "wrong; the stamps are used, --rate overrides",
-                   base.channel, in_words(base.rate_hz), in_words(*header_rate_hz))});
+                   "wrong; the stamps are used",
+                   base.channel, in_words(base.rate_hz), in_words(*header_rate_hz)),
+       {Advice{"rate"}}});
   return notes;
 }
 

@@ -68,7 +68,7 @@ RunningTimeBase::RunningTimeBase(const TimeEvidence& first_rows, const ReadOptio
                                                       in_words(*header_rate_hz_))});
   } else if (first_rows.samples > 1) {
     decisions_.push_back(
-        {Severity::warning, "no time column and no rate: samples are numbered; give --rate HZ"});
+        {Severity::warning, "no time column and no rate: samples are numbered", {Advice{"rate"}}});
   }
 }
 

@@ -50,6 +50,10 @@ std::optional<OtherClock> as_clock(const Channel& channel) {
   return out;
 }
 
+bool is_steadier(const ClockPair& pair) {
+  return pair.other_jitter_s < pair.base_jitter_s / 3.0;
+}
+
 std::string words_on(const std::string& base, const std::string& other, const ClockPair& pair) {
   std::string text = fmt::format(
       "{} against {}: {:+.3g} ppm (standard deviation {:.2g}), jitter of "
@@ -58,8 +62,7 @@ std::string words_on(const std::string& base, const std::string& other, const Cl
       in_words(pair.base_jitter_s));
   if (pair.outliers > 0)
     text += fmt::format(", {} of {} stretches off the line", pair.outliers, pair.blocks);
-  const bool is_steadier = pair.other_jitter_s < pair.base_jitter_s / 3.0;
-  if (is_steadier) text += fmt::format("; it is the steadier clock: --time {} takes it", other);
+  if (is_steadier(pair)) text += "; it is the steadier clock";
   return text;
 }
 
@@ -81,7 +84,8 @@ void note_other_clocks(Recording& recording) {
       recording.time.start_ns = clock->start_ns;
       text += "; the date of the first sample is taken from it";
     }
-    recording.notes.push_back({Severity::info, std::move(text)});
+    Note& note = recording.notes.emplace_back(Note{Severity::info, std::move(text)});
+    if (is_steadier(*pair)) note.advice = {Advice{"time", channel.name}};
   }
 }
 

@@ -164,9 +164,10 @@ MemberHint hint_of(Archive& archive,
   hint.notes.push_back({Severity::info,
                         "x-IMU: packet numbers, which count packets of all kinds, "
                         "are not times and are omitted"});
-  hint.notes.push_back({Severity::info, hint.rate_hz
-                                            ? fmt::format("rate {} Hz by {}", *hint.rate_hz, how)
-                                            : "no file beside it says its rate: give --rate"});
+  if (hint.rate_hz)
+    hint.notes.push_back({Severity::info, fmt::format("rate {} Hz by {}", *hint.rate_hz, how)});
+  else
+    hint.notes.push_back({Severity::info, "no file beside it states its rate", {Advice{"rate"}}});
   return hint;
 }
 

@@ -157,7 +157,8 @@ class XimuTable final : public TableReader {
     if (!head_.rate_hz) {
       head_.notes.push_back({Severity::info,
                              "the packets have no time and no date that their rate "
-                             "could be counted by: give --rate"});
+                             "could be counted by",
+                             {Advice{"rate"}}});
       return;
     }
     const double before_s = static_cast<double>(survey.until_first[kind.header]) / *head_.rate_hz;

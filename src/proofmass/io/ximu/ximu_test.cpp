@@ -65,7 +65,7 @@ TEST(Ximu, WithoutDatesAsksForTheRate) {
   const auto read = read_text(bytes);
   ASSERT_TRUE(read.has_value());
   EXPECT_EQ(read->time.rate_hz, 0.0);
-  EXPECT_TRUE(is_noted(*read, "give --rate")) << notes_of(*read);
+  EXPECT_TRUE(recommends(*read, "rate")) << notes_of(*read);
 }
 
 TEST(Ximu, EachKindIsATable) {

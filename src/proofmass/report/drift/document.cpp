@@ -60,7 +60,7 @@ Fields report_fields(const DriftReport& report, const std::vector<Note>& notes) 
         field::number("forecast_s", report.forecast_s, {.meaning = "time of the forecast"}));
   std::vector<std::string> infos;
   for (const Note& note : notes)
-    if (note.severity == Severity::info) infos.push_back(note.text);
+    if (note.severity == Severity::info) infos.push_back(with_flags(note));
   fields.push_back(field::texts("notes", infos, {.meaning = "how the input was read"}));
   return fields;
 }

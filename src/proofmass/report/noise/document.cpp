@@ -27,8 +27,7 @@ std::vector<Note> all_notes(const NoiseReport& report) {
     }
     if (const std::string moving = motion_sentence(channel.rest, "noise"); !moving.empty())
       notes.push_back({Severity::bad, channel.name + ": " + moving});
-    for (const Note& note : channel.analysis->notes)
-      notes.push_back({note.severity, channel.name + ": " + note.text});
+    for (const Note& note : channel.analysis->notes) notes.push_back(note.at(channel.name));
   }
   return notes;
 }

@@ -6,6 +6,7 @@
 #include "proofmass/core/version.hpp"
 #include "proofmass/report/json.hpp"
 #include "proofmass/report/page/thinning.hpp"
+#include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {
 namespace {
@@ -127,7 +128,7 @@ std::string page_json(const Page& page) {
     return Value(Object{{"label", one.label}, {"value", one.value}});
   };
   const auto note = [](const Note& one) {
-    return Value(Object{{"severity", name_of(one.severity)}, {"text", one.text}});
+    return Value(Object{{"severity", name_of(one.severity)}, {"text", with_flags(one)}});
   };
   return json_text(Object{{"proofmass", version()},
                           {"verb", page.verb},

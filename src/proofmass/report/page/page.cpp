@@ -175,7 +175,8 @@ std::string items_of(const std::vector<Note>& notes, bool (*wanted)(Severity)) {
     if (!wanted(note.severity)) continue;
     const bool grave = note.severity > Severity::info;
     fmt::format_to(Out(items), "<li class=\"{0}\">{1}{2}</li>\n", word(note.severity),
-                   grave ? fmt::format("<b>{}</b> ", word(note.severity)) : "", escaped(note.text));
+                   grave ? fmt::format("<b>{}</b> ", word(note.severity)) : "",
+                   escaped(with_flags(note)));
   }
   return items;
 }

@@ -62,10 +62,8 @@ std::string yaml_gyroscope(const Gyroscope& gyroscope) {
     return out + fmt::format("# {}:  # {}\n", key, why);
   };
   return "\n" +
-         entry(
-             gyroscope.white, "Gyroscope: white noise, N, in rad/s/sqrt(Hz)",
-             "gyroscope_noise_density",
-             "rad/s/sqrt(Hz); measure it at rest, proofmass noise FILE --update-sensor FILE.toml") +
+         entry(gyroscope.white, "Gyroscope: white noise, N, in rad/s/sqrt(Hz)",
+               "gyroscope_noise_density", "rad/s/sqrt(Hz); measure it at rest") +
          entry(gyroscope.random_walk,
                "Gyroscope: random walk of the bias, K, in rad/s^2/sqrt(Hz), which is rad/s/sqrt(s)",
                "gyroscope_random_walk",
@@ -75,7 +73,7 @@ std::string yaml_gyroscope(const Gyroscope& gyroscope) {
 
 Status check_white(const AxisFigures& white) {
   constexpr std::string_view remedy =
-      "measure it at rest, proofmass noise FILE --update-sensor FILE.toml, or write it there from "
+      "measure it at rest, or write it into the sensor file from "
       "the datasheet (one-sided density / sqrt(2))";
   if (const std::string axes = missing_axes(white); !axes.empty())
     return Error{Errc::invalid_argument,

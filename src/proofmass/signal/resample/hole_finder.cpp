@@ -98,8 +98,9 @@ Status HoleFinder::check(std::size_t samples, double spare) const {
   if (missing_ <= 3.0 * static_cast<double>(samples) + spare) return Done{};
   return Error{Errc::corrupt,
                fmt::format("the gaps in the stamps are as long as {:.3g} samples, and there "
-                           "are {}: use --from and --to, or --rate to ignore the stamps",
-                           missing_, samples)};
+                           "are {}: analyse a part, or ignore the stamps and state the rate",
+                           missing_, samples),
+               {Advice{"from"}, Advice{"to"}, Advice{"rate"}}};
 }
 
 EvenGrid HoleFinder::grid() const {

@@ -69,7 +69,7 @@ void check_slide(const ProcedureOptions& options, Verdict& verdict) {
   verdict.require(std::min(slide.initial_rest_s, slide.final_rest_s) * options.rate_hz >= 2.0,
                   "initial_rest_s and final_rest_s", "must each hold at least two samples");
   verdict.require(!slide.gravity_removed || options.output == RigOutput::acceleration,
-                  "gravity_removed", "needs an output in m/s^2");
+                  "gravity_removed", "needs an output in m/s²");
 }
 
 void check_bench_sensor(const ProcedureSensor& sensor, Verdict& verdict) {

@@ -7,9 +7,13 @@
 
 namespace proofmass::simulate::description {
 
-void fail(const toml::node& node, std::string_view key, std::string_view why) {
-  throw Failure{
-      {Errc::invalid_argument, fmt::format("line {}: {} {}", node.source().begin.line, key, why)}};
+void fail(const toml::node& node,
+          std::string_view key,
+          std::string_view why,
+          std::vector<Advice> advice) {
+  throw Failure{{Errc::invalid_argument,
+                 fmt::format("line {}: {} {}", node.source().begin.line, key, why),
+                 std::move(advice)}};
 }
 
 void Fill::operator()(double& member) const {
@@ -40,8 +44,7 @@ void Fill::operator()(std::uint64_t& member) const {
 void must_be_empty(const toml::table& table, std::string_view section) {
   if (!table.empty())
     fail(table.begin()->second, table.begin()->first.str(),
-         fmt::format("is not a key of {}; `proofmass simulate --print-config` shows them all",
-                     section));
+         fmt::format("is not a key of {}", section), {Advice{"print-config"}});
 }
 
 // The shortest decimal that reads back and converts to exactly `member`; the nearest if none does.

@@ -28,7 +28,10 @@ struct Failure {
   Error error;
 };
 
-[[noreturn]] void fail(const toml::node& node, std::string_view key, std::string_view why);
+[[noreturn]] void fail(const toml::node& node,
+                       std::string_view key,
+                       std::string_view why,
+                       std::vector<Advice> advice = {});
 
 /// Fills a member from a node; one overload for each type of member.
 struct Fill {
