@@ -16,10 +16,9 @@ TEST_P(Coverages, HoldForEveryQuantity) {
   for (const auto& [name, coverage] : covered.table) {
     if (coverage.recordings == 0) continue;
     EXPECT_LT(coverage.largest, 5.0) << name;
-    // Below 24 of 30 an interval that holds 95 % of the time has a probability of 0.3 %. That of
-    // the track width is known to be too narrow with fixes (docs/methods/drive.md).
+    // Below 24 of 30 an interval that holds 95 % of the time has a probability of 0.3 %.
     if (coverage.recordings >= 24) {
-      EXPECT_GE(coverage.percent(), name == "track" ? 70.0 : 80.0) << name;
+      EXPECT_GE(coverage.percent(), 80.0) << name;
     }
   }
 }

@@ -77,7 +77,7 @@ TEST(WithFlags, NamesThoseThatHelp) {
   EXPECT_EQ(with_flags(Note{Severity::info, "no rate"}), "no rate");
   EXPECT_EQ(with_flags(Note{Severity::info, "no rate", {Advice{"rate"}}}), "no rate (--rate)");
   EXPECT_EQ(
-      sentence(
+      with_flags(
           Error{Errc::not_observable, "no rest", {Advice{"rests", "ends"}, Advice{"still"}}}.at(
               "a.csv")),
       "a.csv: no rest (--rests ends, --still)");

@@ -14,8 +14,7 @@ constexpr double step_s = 0.1;
 constexpr double most_epochs = 12000.0;
 constexpr double still_radps = 0.03;  // of every wheel: the vehicle stands
 constexpr double steering_mps = 0.5;  // slower, the steering angle is not that of the path
-// The smoother's angle errors are correlated over some epochs, the filter takes them as white.
-constexpr double angle_inflation = 2.0, least_angle_std_rad = 0.003;
+constexpr double least_angle_std_rad = 0.003;
 
 void add_wheel(const Trace& trace, double offset_s, std::size_t wheel, std::vector<Epoch>& epochs) {
   const double first = at_time(trace.time_s, trace.angle_rad, epochs.front().time_s + offset_s);
@@ -24,8 +23,8 @@ void add_wheel(const Trace& trace, double offset_s, std::size_t wheel, std::vect
     epoch.angle_rad[wheel] = missing;
     if (t < trace.time_s.front() || t > trace.time_s.back()) continue;
     epoch.angle_rad[wheel] = at_time(trace.time_s, trace.angle_rad, t) - first;
-    epoch.angle_std_rad[wheel] = std::max(
-        least_angle_std_rad, angle_inflation * at_time(trace.time_s, trace.angle_std_rad, t));
+    epoch.angle_std_rad[wheel] =
+        std::max(least_angle_std_rad, at_time(trace.time_s, trace.angle_std_rad, t));
     epoch.angle_rate_radps[wheel] = at_time(trace.time_s, trace.speed_radps, t);
   }
 }

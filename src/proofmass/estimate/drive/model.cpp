@@ -16,7 +16,8 @@ using Rows = Readings<at::states, Model::channels>;
 constexpr double standing_std_mps = 0.01, standing_std_radps = 0.002;
 // Toe, Ackermann error and tyre slip of a steered wheel; steering angle when nearly standing.
 constexpr double steer_std_rad = 0.02, parked_steer_std_rad = 0.5;
-constexpr double yaw_std_rad = 0.002;
+// White error of a gyroscope's yaw: on a wheel its axes rotate, and their errors with them.
+constexpr double wheel_yaw_std_rad = 0.002, frame_yaw_std_rad = 0.0007;
 // Sideways motion of the reference point is a random walk of the size of slip.
 constexpr double huber = 3.0, reject_beyond = 12.0;
 
@@ -152,9 +153,10 @@ void Model::measure_yaw(const State& x, const Epoch& now, Rows& out) const {
     const double seen = x(at::heading) + wheel.steer - x(at::rate) * lead_s;
     row.value = now.yaw_rad[n];
     row.predicted = gain * seen + x(at::drift + j);
-    row.variance = square(!steered && !(comparing && j < most_wheels) ? yaw_std_rad
-                          : now.turns                                 ? steer_std_rad
-                                                                      : parked_steer_std_rad);
+    const bool as_steered = steered || (comparing && j < most_wheels);
+    row.variance = square(as_steered        ? (now.turns ? steer_std_rad : parked_steer_std_rad)
+                          : j < most_wheels ? wheel_yaw_std_rad
+                                            : frame_yaw_std_rad);
     row.h(at::heading) = gain;
     row.h(at::yaw_scale + j) = seen;
     row.h(at::drift + j) = 1.0;

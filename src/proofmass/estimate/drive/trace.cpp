@@ -254,7 +254,10 @@ Result<Trace> trace_wheel(const DriveWheel& wheel, const WheelOptions& options) 
   Trace trace;
   trace.time_s = solved->series.time_s;
   trace.angle_rad = solved->series.angle_rad;
-  trace.angle_std_rad = solved->series.angle_std_rad;
+  // The smoother's errors are correlated over some epochs; the filter takes them as white.
+  constexpr double inflation = 2.0;
+  for (const double std_rad : solved->series.angle_std_rad)
+    trace.angle_std_rad.push_back(inflation * std_rad);
   trace.speed_radps = solved->series.speed_radps;
   trace.turns = solved->turns;
   for (const Note& note : solved->notes)
