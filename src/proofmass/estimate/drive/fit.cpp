@@ -163,9 +163,26 @@ class NoiseSearch {
         }
       }
     }
+    if (model_.with_fixes) take_mean_square(model_.noise.wander_std_m);
   }
 
  private:
+  // From the most probable value to the root mean square over its log-normal distribution: a few
+  // swings of a slow wander leave its size open, and with it the weight of the fixes.
+  void take_mean_square(double& value) const {
+    constexpr double step = 0.35;  // of the logarithm
+    const double best = value, at_best = probability();
+    value = best * std::exp(step);
+    const double above = probability();
+    value = best * std::exp(-step);
+    const double below = probability();
+    const double curvature = (2.0 * at_best - above - below) / square(step);
+    constexpr double widest = 0.5;
+    const double variance =
+        curvature > 0.0 ? std::min(1.0 / curvature, square(widest)) : square(widest);
+    value = best * std::exp(variance);
+  }
+
   struct Parameter {
     double Noise::* value;
     double usual, spread;  ///< median, and standard deviation of the logarithm
@@ -174,7 +191,7 @@ class NoiseSearch {
   static constexpr std::array<Parameter, 4> parameters_{
       {{&Noise::slip_m_per_rtm, 0.004, 0.7, false},
        {&Noise::fix_std_m, 0.15, 1.0, true},
-       {&Noise::wander_std_m, 0.7, 0.5, true},
+       {&Noise::wander_std_m, 0.7, 1.0, true},
        {&Noise::wander_s, 30.0, 0.5, true}}};
 
   [[nodiscard]] double probability() const {
