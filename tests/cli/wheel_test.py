@@ -81,7 +81,7 @@ class Wheel(CommandTest):
         ran = self.run_command("wheel", "speeds.csv", "--radius", "0.15", "--radius-std", "0.001", "--strict")
         self.assertEqual(ran.returncode, BAD_DATA, ran.stderr)
         self.assertRegex(ran.stderr.decode(),
-                         r"--radius 150 mm \+- 1 mm contradicts the recording's (99|100|101) mm")
+                         r"the given radius of 150 mm (±|\+-) 1 mm contradicts the recording's (99|100|101) mm")
         self.succeed("wheel", "speeds.csv", "--radius", "0.1", "--strict")
 
     def test_the_spin_axis_given_turned_round_turns_the_sign(self):

@@ -69,8 +69,13 @@ export async function audit(page, name) {
 
 /// Nothing sticks out of the page's width, and axe finds nothing serious.
 export async function check(page, name) {
-  const wide = await page.evaluate(() => document.querySelector("main").scrollWidth - document.querySelector("main").clientWidth);
-  assert.ok(wide <= 1, `${name}: ${wide} px too wide`);
+  const wide = await page.evaluate(() => {
+    const main = document.querySelector("main");
+    const right = main.getBoundingClientRect().left + main.clientWidth;
+    const beyond = [...main.querySelectorAll("*")].filter((element) => element.getBoundingClientRect().right > right + 1);
+    return { by: main.scrollWidth - main.clientWidth, beyond: beyond.slice(0, 5).map((element) => element.outerHTML.slice(0, 200)) };
+  });
+  assert.ok(wide.by <= 1, `${name}: ${wide.by} px too wide: ${wide.beyond.join("\n")}`);
   await shot(page, name);
   await audit(page, name);
 }

@@ -105,7 +105,7 @@ TEST(NoiseStream, SaysWhatNeedsTheWholeRecordAndWhatToDo) {
                    "or choose oadev, mdev, tdev or ohdev");
   expect_refused({.rate_hz = 100.0, .taus = {.kind = TauGrid::Kind::all}}, "choose octave");
   expect_refused({.rate_hz = 100.0, .noise_type = NoiseTypeSource::lag1}, "lag 1");
-  expect_refused({.rate_hz = 100.0, .exclude_events = true}, "--from and --to");
+  expect_refused({.rate_hz = 100.0, .exclude_events = true}, "analyse a part");
   expect_refused({.rate_hz = 100.0, .kind = SeriesKind::phase}, "phase");
   expect_refused(
       {.rate_hz = 1000.0, .taus = {.kind = TauGrid::Kind::given, .times_s = {99999.999}}},

@@ -143,7 +143,7 @@ TEST(LiveTilt, MissingMeasurementsWidenTheBandAndAreReported) {
 
 TEST(LiveTilt, WithoutGravityInTheReadingsItSaysSo) {
   const TiltRecord record = still_record(force_at(0.3, -0.2, 1.0), 0.02, 300, 6);
-  EXPECT_TRUE(follow(record, options_for(record)).fed.says("gravity was taken out"));
+  EXPECT_TRUE(follow(record, options_for(record)).fed.says("gravity was removed"));
 }
 
 TEST(LiveTilt, AStepAllocatesNothing) {

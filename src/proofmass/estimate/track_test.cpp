@@ -151,11 +151,13 @@ TEST(Track, RefusesReadingsInGThatAreSaidToBeInMetres) {
   carriage.at_rest_mps2 = {0.0, 0.0, 1.0};
   const auto found = estimate_track(record(carriage).sensor, {});
   ASSERT_FALSE(found);
-  EXPECT_NE(found.error().message.find("--unit g"), std::string::npos);
+  ASSERT_FALSE(found.error().advice.empty());
+  EXPECT_EQ(found.error().advice.front().value, "g");
   carriage.at_rest_mps2 = {0.0, 0.0, g * g};
   const auto other = estimate_track(record(carriage).sensor, {});
   ASSERT_FALSE(other);
-  EXPECT_NE(other.error().message.find("--unit m/s2"), std::string::npos);
+  ASSERT_FALSE(other.error().advice.empty());
+  EXPECT_EQ(other.error().advice.front().value, "m/s2");
 }
 
 TEST(Track, RefusesARecordWithoutARestAndSaysWhatToRecord) {

@@ -34,7 +34,10 @@ TEST(ChooseTable, PrefersAccelerations) {
   ASSERT_EQ(choice.notes.size(), 1u);
   EXPECT_EQ(choice.notes[0].text,
             "Accelerometer is read, having accelerations; also holds Gyroscope (2 columns, 9000 "
-            "rows): --variable \"Gyroscope\"");
+            "rows)");
+  ASSERT_EQ(choice.notes[0].advice.size(), 1u);
+  EXPECT_EQ(choice.notes[0].advice[0].option, "variable");
+  EXPECT_EQ(choice.notes[0].advice[0].value, "Gyroscope");
 }
 
 TEST(ChooseTable, TakesTheOneWithMostRowsOfSeveral) {

@@ -239,7 +239,7 @@ TEST(CalibrationUpdate, OfOneAxisKeepsTheOthersAndDropsTheOldCovariance) {
   ASSERT_EQ(notes.size(), 3U);
   EXPECT_NE(notes[0].text.find("bias y, bias z, scale y"), std::string::npos) << notes[0].text;
   EXPECT_NE(notes[1].text.find("covariance is left out"), std::string::npos);
-  EXPECT_NE(notes[2].text.find("was 9.81744 m/s^2 and is 9.8 m/s^2"), std::string::npos);
+  EXPECT_NE(notes[2].text.find("was 9.81744 m/s² and is 9.8 m/s²"), std::string::npos);
 }
 
 TEST(CalibrationUpdate, OfAllAxesForgetsUnderWhatTheOldOneHeld) {

@@ -92,13 +92,8 @@ mounting_deg = 90
 }
 
 TEST(RigFile, ErrorsNameFileLineAndKey) {
-  EXPECT_EQ(error_of("\nrate = 100"),
-            "rig.toml: line 2: rate is not a key of a rig's description; `proofmass simulate "
-            "--print-config` shows them all");
-  EXPECT_EQ(
-      error_of("[daq]\nbit = 3"),
-      "rig.toml: line 2: bit is not a key of [daq]; `proofmass simulate --print-config` shows "
-      "them all");
+  EXPECT_EQ(error_of("\nrate = 100"), "rig.toml: line 2: rate is not a key of a rig's description");
+  EXPECT_EQ(error_of("[daq]\nbit = 3"), "rig.toml: line 2: bit is not a key of [daq]");
   EXPECT_EQ(error_of("rate_hz = \"fast\""), "rig.toml: line 1: rate_hz must be a number");
   EXPECT_EQ(error_of("rate_hz = -1"), "rig.toml: rate_hz must be positive");
   EXPECT_EQ(error_of("[[sensor]]\n\nscale = [1, 2]"),

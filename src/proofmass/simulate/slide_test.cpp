@@ -180,8 +180,7 @@ TEST(Slide, GravityRemovedLeavesMotionAndTheSensorsErrors) {
   const Triple acc(result.recording, "acc");
   EXPECT_LT((acc(10) - Eigen::Vector3d(0.1, 0.2, -0.3)).norm(), 1e-12);
   options.output = RigOutput::voltage;
-  EXPECT_EQ(simulate_procedure(options).error().message,
-            "gravity_removed needs an output in m/s^2");
+  EXPECT_EQ(simulate_procedure(options).error().message, "gravity_removed needs an output in m/s²");
 }
 
 TEST(Slide, TheTrueSensorFileGivesTheTrueForceWhileItMoves) {

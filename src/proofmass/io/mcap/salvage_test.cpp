@@ -195,12 +195,12 @@ TEST(McapRecording, RowsOfAnotherTopicAreToldWhereTheyAreKnownAndElseNotGuessed)
     const auto read = read_text(file.take_bytes());
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_TRUE(is_noted(*read, in_one_message ? "also holds estimates (2 columns, 3 rows)"
-                                               : "also holds estimates (2 columns):"))
+                                               : "also holds estimates (2 columns)"))
         << notes_of(*read);
   }
 }
 
-TEST(McapRecording, EventsAreToldInANoteAndAreNoTable) {
+TEST(McapRecording, EventsAreInANoteAndAreNoTable) {
   McapRecording file;
   const std::vector<Channel> columns{{"u", *parse_unit("V"), {}}};
   const std::vector<Channel> derived{{"acc_x", *parse_unit("m/s^2"), {}}};

@@ -77,13 +77,15 @@ Status check_white(const AxisFigures& white) {
       "the datasheet (one-sided density / sqrt(2))";
   if (const std::string axes = missing_axes(white); !axes.empty())
     return Error{Errc::invalid_argument,
-                 fmt::format("noise.white is missing on axis {}: {}", axes, remedy)};
+                 fmt::format("noise.white is missing on axis {}: {}", axes, remedy),
+                 {Advice{"update-sensor"}}};
   if (worst(white) <= 0.0)
     return Error{
         Errc::not_observable,
         fmt::format("noise.white is 0 on all axes, as where a recording could not determine "
                     "it: {}",
-                    remedy)};
+                    remedy),
+        {Advice{"update-sensor"}}};
   return Done{};
 }
 
