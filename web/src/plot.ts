@@ -327,8 +327,8 @@ export function draw(figure: Figure, options: PlotOptions = {}): Drawn {
   const height = (): number => options.height ?? Math.round(figure.height * (place.clientWidth < 500 ? 0.9 : 1.1));
   const plot = new uPlot(
     {
-      width: 400,
-      height: 300,
+      width: 280, // until it is laid out: narrower than any screen
+      height: 210,
       legend: { show: false },
       cursor: { drag: { x: true, y: false, uni: 20 }, points: { size: 7 } },
       scales: {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "proofmass/report/wording.hpp"
 #include "proofmass/serve/live/json_numbers.hpp"
 
 namespace proofmass::serve {
@@ -137,7 +138,7 @@ void LiveLines::event(const RecordEvent& event) {
                                     {"start_s", event.time_s},
                                     {"duration_s", event.duration_s},
                                     {"rows", event.rows},
-                                    {"text", event.text}})));
+                                    {"text", report::with_flags(event)}})));
 }
 
 void LiveLines::refresh(Clock::time_point now) {
@@ -194,7 +195,7 @@ void LiveLines::ended(const RecordSummary& summary) {
   write_rows();
   OrderedJson audit = OrderedJson::array();
   for (const Note& note : summary.audit)
-    audit.push_back({{"severity", word_of(note.severity)}, {"text", note.text}});
+    audit.push_back({{"severity", word_of(note.severity)}, {"text", report::with_flags(note)}});
   write_(live_line("end", dumped({{"how", word_of(summary.end)},
                                   {"reason", summary.end_reason},
                                   {"files", summary.files},
