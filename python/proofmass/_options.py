@@ -47,11 +47,11 @@ def in_python(error: Error) -> Error:
 def with_option_names(text: str) -> str:
     """A message of the command, with names of options instead of flags.
 
-    >>> with_option_names("which is gravity in g (--unit g, --rate)")
-    "which is gravity in g (unit='g', rate_hz=)"
+    >>> with_option_names("which is gravity in g (use --unit g or --gravity removed)")
+    "which is gravity in g (use unit='g' or gravity='removed')"
     """
     text = re.sub(r"proofmass ([a-z]+) --help", r"help(proofmass.\1)", text)
-    text = re.sub(r"\((--[^()]+)\)$", lambda advice: "(" + ", ".join(map(_assigned, advice[1].split(", "))) + ")", text)
+    text = re.sub(r"\(use (--[^()]+)\)$", lambda advice: f"(use {' or '.join(map(_assigned, advice[1].split(' or ')))})", text)
     return re.sub(r"--([a-z][a-z0-9-]*)", lambda flag: _name_of(flag[1]) + "=", text)
 
 

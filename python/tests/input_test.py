@@ -195,7 +195,7 @@ def test_findings_become_warnings():
     with pytest.warns(pm.ProofmassWarning, match="gravity"):
         pm.calibrate(pm.simulate(procedure="multi-position", seed=3).recording, monte_carlo=0)
     level = np.random.default_rng(1).normal(scale=0.01, size=(2000, 3)) + [0.0, 0.0, 9.81]
-    with pytest.warns(pm.ProofmassWarning, match="sensor=, bias_std="):
+    with pytest.warns(pm.ProofmassWarning, match="use sensor= or bias_std="):
         pm.tilt(level, rate_hz=100, unit="m/s2")
 
 

@@ -16,16 +16,16 @@ int decimals_for(double std) {
   return leading < 355.0 ? 1 - exponent : -exponent;  // 950 … 999 rounds up to one more digit
 }
 
-// " (--from, --to)"; a value with spaces in quotes.
+// " (use --from or --to)"; a value with spaces in quotes.
 std::string flag_words(const std::vector<Advice>& advice) {
   std::string flags;
   for (const Advice& one : advice) {
-    flags += (flags.empty() ? "--" : ", --") + one.option;
+    flags += (flags.empty() ? "--" : " or --") + one.option;
     if (one.value.empty()) continue;
     const bool quoted = one.value.find(' ') != std::string::npos;
     flags += fmt::format(" {1}{0}{1}", one.value, quoted ? "\"" : "");
   }
-  return flags.empty() ? "" : " (" + flags + ")";
+  return flags.empty() ? "" : " (use " + flags + ")";
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ using proofmass::significant;
 [[nodiscard]] std::string print_unit(std::string_view symbol);
 
 /// The text with the options that would help, as the program spells them: "the samples have neither
-/// time nor rate (--rate)".
+/// time nor rate (use --rate)".
 [[nodiscard]] std::string with_flags(const Note& note);
 [[nodiscard]] std::string with_flags(const Error& error);
 [[nodiscard]] std::string with_flags(const RecordEvent& event);

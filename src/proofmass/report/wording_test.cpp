@@ -75,14 +75,14 @@ TEST(PrintUnit, RaisesPowersAndDrawsRoots) {
 
 TEST(WithFlags, NamesThoseThatHelp) {
   EXPECT_EQ(with_flags(Note{Severity::info, "no rate"}), "no rate");
-  EXPECT_EQ(with_flags(Note{Severity::info, "no rate", {Advice{"rate"}}}), "no rate (--rate)");
+  EXPECT_EQ(with_flags(Note{Severity::info, "no rate", {Advice{"rate"}}}), "no rate (use --rate)");
   EXPECT_EQ(
       with_flags(
           Error{Errc::not_observable, "no rest", {Advice{"rests", "ends"}, Advice{"still"}}}.at(
               "a.csv")),
-      "a.csv: no rest (--rests ends, --still)");
+      "a.csv: no rest (use --rests ends or --still)");
   EXPECT_EQ(with_flags(Note{Severity::info, "also b", {Advice{"variable", "b c"}}}.at("f")),
-            "f: also b (--variable \"b c\")");
+            "f: also b (use --variable \"b c\")");
 }
 
 TEST(Joined, HasAndBeforeTheLast) {
