@@ -106,6 +106,10 @@ TEST(NoiseStream, SaysWhatNeedsTheWholeRecordAndWhatToDo) {
   expect_refused({.rate_hz = 100.0, .taus = {.kind = TauGrid::Kind::all}}, "choose octave");
   expect_refused({.rate_hz = 100.0, .noise_type = NoiseTypeSource::lag1}, "lag 1");
   expect_refused({.rate_hz = 100.0, .exclude_events = true}, "analyse a part");
+  const auto stream = NoiseStream::start({.rate_hz = 100.0, .exclude_events = true});
+  ASSERT_EQ(stream.error().advice.size(), 2u);
+  EXPECT_EQ(stream.error().advice[0].option, "from");
+  EXPECT_EQ(stream.error().advice[1].option, "to");
   expect_refused({.rate_hz = 100.0, .kind = SeriesKind::phase}, "phase");
   expect_refused(
       {.rate_hz = 1000.0, .taus = {.kind = TauGrid::Kind::given, .times_s = {99999.999}}},

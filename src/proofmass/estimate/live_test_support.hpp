@@ -35,6 +35,11 @@ struct Fed {
     return std::ranges::any_of(
         notes, [&](const Note& note) { return note.text.find(words) != std::string::npos; });
   }
+  [[nodiscard]] bool recommends(const std::string& option) const {
+    return std::ranges::any_of(notes, [&](const Note& note) {
+      return std::ranges::find(note.advice, option, &Advice::option) != note.advice.end();
+    });
+  }
 };
 
 inline Fed feed(LiveAnalysis& analysis, const Stream& stream, std::size_t piece) {

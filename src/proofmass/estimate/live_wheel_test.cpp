@@ -207,8 +207,9 @@ TEST(LiveWheel, ReportsThatThereIsNoWheel) {
 
 TEST(LiveWheel, ReportsThatTheRadiusIsUnknown) {
   const Drive slow{{0.3, 11 * rpm}, {{12.0, 11 * rpm}}};
-  EXPECT_TRUE(
-      follow(one_sensor(slow), options_for(1, std::nullopt)).fed.says("angle is less certain"));
+  const auto followed = follow(one_sensor(slow), options_for(1, std::nullopt));
+  EXPECT_TRUE(followed.fed.says("angle is less certain"));
+  EXPECT_TRUE(followed.fed.recommends("radius"));
 }
 
 TEST(LiveWheel, AStepAllocatesNothingOnceTheWheelIsFound) {

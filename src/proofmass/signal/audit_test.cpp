@@ -197,7 +197,7 @@ TEST(Clipping, IsSeenBelowNoiseThatWasAddedBehindIt) {
   EXPECT_NE(notes_of(found).find("with noise added after it"), std::string::npos);
 }
 
-/// Vibration of a broad band, standard deviation 1, at up to a third of a cycle per sample.
+/// Vibration of a broad band, standard deviation 1, below a quarter of a cycle per sample.
 std::vector<double> vibration() {
   const std::vector<double> white = noise(20'003, 1.0);
   std::vector<double> out;

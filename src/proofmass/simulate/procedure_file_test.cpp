@@ -81,6 +81,10 @@ TEST(ProcedureFile, ErrorsNameFileLineAndKey) {
   EXPECT_EQ(error_of("\nprocedure = \"six-position\""),
             "bench.toml: line 2: procedure is six-position, but tumble was asked for");
   EXPECT_EQ(error_of("[hand]\n\npose = 3"), "bench.toml: line 3: pose is not a key of [hand]");
+  const auto unknown_key =
+      parse_procedure_file("[hand]\npose = 3", "bench.toml", Procedure::tumble);
+  ASSERT_EQ(unknown_key.error().advice.size(), 1u);
+  EXPECT_EQ(unknown_key.error().advice[0].option, "print-config");
   EXPECT_EQ(error_of("[sensor]\nK2 = 3"), "bench.toml: line 2: K2 must be an array of 3 numbers");
   EXPECT_EQ(error_of("[timing]\nmove_s = 0"), "bench.toml: move_s must be positive");
   EXPECT_EQ(parse_procedure_file("rate_hz =", "b", Procedure::tumble).error().code, Errc::corrupt);

@@ -94,6 +94,9 @@ mounting_deg = 90
 TEST(RigFile, ErrorsNameFileLineAndKey) {
   EXPECT_EQ(error_of("\nrate = 100"), "rig.toml: line 2: rate is not a key of a rig's description");
   EXPECT_EQ(error_of("[daq]\nbit = 3"), "rig.toml: line 2: bit is not a key of [daq]");
+  const auto unknown_key = parse_rig_file("[daq]\nbit = 3", "rig.toml");
+  ASSERT_EQ(unknown_key.error().advice.size(), 1u);
+  EXPECT_EQ(unknown_key.error().advice[0].option, "print-config");
   EXPECT_EQ(error_of("rate_hz = \"fast\""), "rig.toml: line 1: rate_hz must be a number");
   EXPECT_EQ(error_of("rate_hz = -1"), "rig.toml: rate_hz must be positive");
   EXPECT_EQ(error_of("[[sensor]]\n\nscale = [1, 2]"),

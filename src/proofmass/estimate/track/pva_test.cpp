@@ -173,8 +173,10 @@ TEST(TrackFused, RefusesASensorThatIsNotParallel) {
   EXPECT_NE(estimate_track(made.sensor, options).error().message.find("turned by 30 deg"),
             std::string::npos);
   made.sensor.beside[0].accel_mps2[0].clear();
-  EXPECT_NE(estimate_track(made.sensor, options).error().message.find("no axis along the motion"),
-            std::string::npos);
+  const auto without_axis = estimate_track(made.sensor, options);
+  EXPECT_NE(without_axis.error().message.find("no axis along the motion"), std::string::npos);
+  ASSERT_EQ(without_axis.error().advice.size(), 1u);
+  EXPECT_EQ(without_axis.error().advice[0].option, "axis");
   made.sensor.beside[0].accel_mps2[0] = {1.0, 2.0};
   EXPECT_FALSE(estimate_track(made.sensor, options));
   made.sensor.beside.assign(4, beside(made, 0.02, 9));

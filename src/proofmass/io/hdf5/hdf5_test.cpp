@@ -114,6 +114,7 @@ TEST_F(Hdf5, SaysWhatElseThereIsAndFollowsNoLink) {
                "also in the file: other (7 uint64), rows (40 x 2 compound), far (link), soft "
                "(link), title (text)"))
       << notes_of(*recording);
+  EXPECT_TRUE(recommends(*recording, "dataset"));
 }
 
 TEST_F(Hdf5, LeavesOtherSensorsWithATimeOfTheirOwnOut) {

@@ -126,6 +126,7 @@ TEST(Mat5, PassesOverWhatIsNotNumbersAndSaysSo) {
                        "also in the file: title (text), S (sparse), f (function handle), table "
                        "(object)"))
       << notes_of(*read);
+  EXPECT_TRUE(recommends(*read, "variable"));
 }
 
 TEST(Mat5, NamesTheByteWhereAFileBreaksOff) {

@@ -197,6 +197,7 @@ TEST(McapRecording, RowsOfAnotherTopicAreToldWhereTheyAreKnownAndElseNotGuessed)
     EXPECT_TRUE(is_noted(*read, in_one_message ? "also holds estimates (2 columns, 3 rows)"
                                                : "also holds estimates (2 columns)"))
         << notes_of(*read);
+    EXPECT_TRUE(recommends(*read, "variable"));
   }
 }
 
