@@ -113,8 +113,7 @@ void run_calibrate_encoder(const CalibrateCommand& command) {
   if (command.radius_m) report.options.radius_m = *command.radius_m;
   report.fit = need(calibrate::calibrate_encoder(wheel, report.options), Stage::computing);
   report.index_slips = std::move(wheel.index_slips);
-  for (const std::string& text : report.fit.notes)
-    report.notes.push_back({Severity::warning, text});
+  report.notes.insert(report.notes.end(), report.fit.notes.begin(), report.fit.notes.end());
   if (!command.update_sensor.empty()) without_interruption([&] { update(command, report); });
   finish(report::describe(report), [&] { return report::encoder_series(report); }, command.output);
 }

@@ -135,7 +135,7 @@ void finish_joined(Joined& joined, double rate_hz) {
   if (found)
     channel.shown.analysis = std::move(found).value();
   else
-    channel.shown.refused = found.error().message;
+    channel.shown.refused = report::with_flags(found.error());
 }
 
 // Number of samples divided by the total duration of all parts.

@@ -141,8 +141,9 @@ void take_temperature_out(const RestTemperature& cause,
   const std::string& name = channel.rest.title;
   const Result<Uncertain> found = signal::regress_out(channel.rest.series, cause.series);
   if (!found) {
-    notes.push_back({Severity::warning, fmt::format("{}: {} was not taken out: {}", name,
-                                                    cause.name, found.error().message)});
+    notes.push_back(
+        {Severity::warning, fmt::format("{}: {} was not taken out: {}", name, cause.name,
+                                        report::with_flags(found.error()))});
     return;
   }
   const bool known = cause.unit.quantity == Quantity::temperature;

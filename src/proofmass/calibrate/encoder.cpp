@@ -163,19 +163,23 @@ void add_notes(const EncoderRecording& recording,
                const EncoderOptions& given,
                EncoderCalibration& out) {
   if (!recording.has_index)
-    out.notes.emplace_back(
-        "without an index pulse the phases count from where this recording's count is zero; they "
-        "hold elsewhere only if the encoder is absolute or keeps its count");
-  if (out.nonlinearity > given.nonlinearity)
-    out.notes.push_back(fmt::format(
-        "the accelerometers' output has harmonics that neither gravity nor the encoder explains: "
-        "their nonlinearity is taken as {:.2g} % at 1 g instead of {:.2g} %",
-        100.0 * out.nonlinearity, 100.0 * given.nonlinearity));
-  if (out.blocks < 10)
     out.notes.push_back(
-        fmt::format("{} turns only: the intervals are wide by Student's t with {} "
-                    "degrees of freedom",
-                    static_cast<int>(out.turns), static_cast<int>(out.dof)));
+        {Severity::warning,
+         "without an index pulse the phases count from where this recording's count is zero; they "
+         "hold elsewhere only if the encoder is absolute or keeps its count",
+         {Advice{"index"}}});
+  if (out.nonlinearity > given.nonlinearity)
+    out.notes.push_back(
+        {Severity::warning,
+         fmt::format(
+             "the accelerometers' output has harmonics that neither gravity nor the encoder "
+             "explains: their nonlinearity is taken as {:.2g} % at 1 g instead of {:.2g} %",
+             100.0 * out.nonlinearity, 100.0 * given.nonlinearity)});
+  if (out.blocks < 10)
+    out.notes.push_back({Severity::warning,
+                         fmt::format("{} turns only: the intervals are wide by Student's t with {} "
+                                     "degrees of freedom",
+                                     static_cast<int>(out.turns), static_cast<int>(out.dof))});
 }
 
 /// Fits, finds the missed counts, removes them from `fixes` and fits again, until there are none;
@@ -192,9 +196,10 @@ Result<EncoderRound> without_slips(const EncoderRecording& recording,
                                                 recording.step_rad);
     if (found.empty()) break;
     if (static_cast<double>(out.missed.size() + found.size()) > round->turns) {
-      out.notes.emplace_back(
-          "the encoder departs from gravity more often than once a turn: these are not missed "
-          "counts, or the wheel does not turn as its accelerometers do; none is removed");
+      out.notes.push_back(
+          {Severity::warning,
+           "the encoder departs from gravity more often than once a turn: these are not missed "
+           "counts, or the wheel does not turn as its accelerometers do; none is removed"});
       out.missed.clear();
       fixes = recording.encoder;
       return one_round(recording, fixes, options);

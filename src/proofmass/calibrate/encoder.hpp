@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "proofmass/core/quantity.hpp"
+#include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/signal/encoder.hpp"
@@ -85,7 +86,7 @@ struct EncoderCalibration {
   /// For plots: offset of the encoder from gravity's direction, with the errors fitted and without,
   /// against time and the wheel's angle.
   std::vector<double> offset_time_s, offset_angle_rad, offset_rad, fitted_rad;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 };
 
 /// Fits

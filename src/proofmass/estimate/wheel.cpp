@@ -105,7 +105,7 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
         readings, plain->places_m, series.angle_rad.front(), series.speed_radps.front());
   if (series.double_integral_angle_rad.empty()) {
     solution.double_integration.note =
-        "needs the radius of every sensor, which this recording does not determine";
+        "needs the radius of every sensor, which this recording does not determine: state it";
     return;
   }
   solution.double_integration.turns = Uncertain{

@@ -167,8 +167,9 @@ class NoiseSearch {
   }
 
  private:
-  // From the most probable value to the root mean square over its log-normal distribution: a few
-  // swings of a slow wander leave its size open, and with it the weight of the fixes.
+  // From the most probable value s to the root mean square over its log-normal distribution,
+  // s e^(σ²) with the variance σ² of the logarithm: a few swings of a slow wander leave its size
+  // open, and with it the weight of the fixes.
   void take_mean_square(double& value) const {
     constexpr double step = 0.35;  // of the logarithm
     const double best = value, at_best = probability();

@@ -16,7 +16,8 @@ using Rows = Readings<at::states, Model::channels>;
 constexpr double standing_std_mps = 0.01, standing_std_radps = 0.002;
 // Toe, Ackermann error and tyre slip of a steered wheel; steering angle when nearly standing.
 constexpr double steer_std_rad = 0.02, parked_steer_std_rad = 0.5;
-// White error of a gyroscope's yaw: on a wheel its axes rotate, and their errors with them.
+// White error of a gyroscope's yaw: on the frame that of stamps by some milliseconds in a bend of
+// 0.3 rad/s; on a wheel its axes rotate, and their errors with them.
 constexpr double wheel_yaw_std_rad = 0.002, frame_yaw_std_rad = 0.0007;
 // Sideways motion of the reference point is a random walk of the size of slip.
 constexpr double huber = 3.0, reject_beyond = 12.0;

@@ -23,8 +23,9 @@ double step_of(View<double> descending, double range) {
 }
 
 /// The level at which values crowd: there is a width below the highest value, at most a 20th of the
-/// range, within which their density is three times that of the interval below it. A sine's is 2.4
-/// times, and that of a signal with crests of different height is lower.
+/// range, within which their density is three times that of the interval below it. That of a
+/// sine, with its arcsine density, is 1/(√2 − 1) = 2.4 times, and that of a signal with crests of
+/// different height is lower.
 std::optional<double> find_crowd(View<double> series, const Extent& extent) {
   constexpr double rise = 3.0, significant = 4.0, fewest = 24.0;
   const double top = extent.high, range = extent.range();
@@ -69,8 +70,9 @@ double mean_slope_at(View<double> series, double level) {
 }
 
 /// Duration of an excursion above a level at this height over the median, for a slope at its ends
-/// and the curvature of the series' own oscillation there: 2 s / (h ω²), with ω from the crossings
-/// of the median.
+/// and the curvature of the series' own oscillation there: a parabola's, 2 s / (h ω²), with ω from
+/// the crossings of the median. Source: S. O. Rice, Bell System Technical Journal 24 (1945) 46,
+/// section 3.3, for the crossings.
 double duration_of_excursion(View<double> series,
                              const Extent& extent,
                              double height,

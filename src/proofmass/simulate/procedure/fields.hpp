@@ -28,8 +28,8 @@ template <class Timing, class Visit>
 void visit_timing(Timing& t, Visit&& visit) {
   visit("dwell_s", t.dwell_s, 1.0, "from standing to the next move");
   visit("move_s", t.move_s, 1.0, "from one position to the next");
-  visit("dwell_jitter", t.dwell_jitter, 1.0, "uniform draw of ±this fraction");
-  visit("move_jitter", t.move_jitter, 1.0, "uniform draw of ±this fraction");
+  visit("dwell_jitter", t.dwell_jitter, 1.0, "uniform within ± this fraction");
+  visit("move_jitter", t.move_jitter, 1.0, "uniform within ± this fraction");
   visit("settle_s", t.settle_s, 1.0, "of the dwell: a decaying oscillation, then exact rest");
   visit("settle_mps2", t.settle_mps2, 1.0, "largest oscillation");
   visit("settle_hz", t.settle_hz, 1.0, "of the oscillation");
@@ -106,8 +106,9 @@ void visit_bench_sensor(Sensor& s, Visit&& visit) {
   visit("bias_mps2", s.bias_mps2, 1.0, "x, y, z");
   visit("scale", s.scale, 1.0, "reading per force");
   visit("misalignment_deg", s.misalignment_rad, rad_per_deg, "of the axes yz, zy, zx from square");
-  visit("bias_spread_mps2", s.bias_spread_mps2, 1.0, "adds a uniform draw of ±this to each bias");
-  visit("scale_spread", s.scale_spread, 1.0, "... and of ±this fraction to each scale");
+  visit("bias_spread_mps2", s.bias_spread_mps2, 1.0,
+        "adds a uniform draw within ± this to each bias");
+  visit("scale_spread", s.scale_spread, 1.0, "... and within ± this fraction to each scale");
   visit("misalignment_spread_deg", s.misalignment_spread_rad, rad_per_deg, "... and to each angle");
   visit_coefficients(s, visit);
   visit("full_scale_mps2", s.full_scale_mps2, 1.0, "either way; it clips here");

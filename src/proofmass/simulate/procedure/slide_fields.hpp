@@ -12,7 +12,7 @@ void visit_slide(Slide& s, Visit&& visit) {
   visit("repetitions", s.repetitions, 1.0, "0: a stroke is one way; n: there and back n times");
   visit("returning", s.returning, 1.0, "one-way strokes go there and back in turn");
   visit("length_m", s.length_m, 1.0, "of a stroke; its time is timing.move_s");
-  visit("length_jitter", s.length_jitter, 1.0, "uniform draw of ±this fraction");
+  visit("length_jitter", s.length_jitter, 1.0, "uniform within ± this fraction");
   visit("turn_pause_s", s.turn_pause_s, 1.0, "between there and back");
   visit("initial_rest_s", s.initial_rest_s, 1.0, "before all; those between are timing.dwell_s");
   visit("final_rest_s", s.final_rest_s, 1.0, "after all");
@@ -29,7 +29,7 @@ void visit_slide(Slide& s, Visit&& visit) {
   visit("gyro", s.gyro, 1.0, "channels gyro_x, gyro_y, gyro_z");
   visit("gyro_bias_degps", s.gyro_bias_radps, rad_per_deg, "x, y, z");
   visit("gyro_bias_spread_degps", s.gyro_bias_spread_radps, rad_per_deg,
-        "adds a uniform draw of ±this to each");
+        "adds a uniform draw within ± this to each");
   visit("gyro_noise_rms_degps", s.gyro_noise_rms_radps, rad_per_deg, "of each sample");
   visit("gyro_walk_degps_rts", s.gyro_walk_radps_rts, rad_per_deg,
         "random walk of the bias in one second");

@@ -14,7 +14,8 @@ void visit_general(Options& o, Visit&& visit) {
   visit("gravity_mps2", o.gravity_mps2, 1.0, "at the rig");
   visit("axes", o.axes, 1.0, "recorded of each sensor: 2 or 3");
   visit("output", o.output, 1.0, "\"acceleration\" (m/s²), \"voltage\" or \"counts\"");
-  visit("bias_spread_mps2", o.bias_spread_mps2, 1.0, "adds a uniform draw of ±this to every bias");
+  visit("bias_spread_mps2", o.bias_spread_mps2, 1.0,
+        "adds a uniform draw within ± this to every bias");
   visit("datasheet_errors", o.datasheet_errors, 1.0,
         "draws misalignment, cross-axis, scale, nonlinearity within the ADXL335's limits");
 }
