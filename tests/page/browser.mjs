@@ -57,6 +57,9 @@ export async function open(query = "", { width = 1280, height = 900, scheme = "l
   return { page, problems, close: async () => { assert.deepEqual(problems, []); await context.close(); } };
 }
 
+// As the page has it: page.url() learns of a change of the history only some time later.
+export const address = async (page) => new URL(await page.evaluate(() => location.href));
+
 export const shot = async (page, name) => void (shots && (await page.screenshot({ path: join(shots, `${name}.png`) })));
 
 // Outside the page's own policy, which lets no other script in.

@@ -4,7 +4,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import assert from "node:assert/strict";
-import { base, check, folder, open, patience, program, shot, start, stop, token } from "./browser.mjs";
+import { address, base, check, folder, open, patience, program, shot, start, stop, token } from "./browser.mjs";
 
 before(start);
 after(stop);
@@ -46,7 +46,7 @@ test("a source is started by hand, recorded under a new name, and stopped", asyn
   await page.waitForSelector("tr.on .recorder >> text=/by-hand.mcap, lost 0/");
   await page.waitForSelector('canvas[aria-label="acc1_x, the last seconds"]');
   await page.waitForSelector(".facts >> text=/ms behind/");
-  assert.match(page.url(), /source=\d/);
+  assert.match(String(await address(page)), /source=\d/);
   await page.click("button:has-text('Hold')");
   await page.waitForSelector("button:has-text('Go on')");
   await page.click("button:has-text('■ Stop')");

@@ -5,7 +5,7 @@ import { readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import assert from "node:assert/strict";
-import { audit, base, folder, newContext, open, patience, program, shot, start, stop } from "./browser.mjs";
+import { address, audit, base, folder, newContext, open, patience, program, shot, start, stop } from "./browser.mjs";
 
 // Deterministic noise: sum of twelve uniform numbers of a small generator.
 function noise(seed) {
@@ -48,7 +48,7 @@ test("without a token the page shows nothing of the folder", async () => {
 
 test("the token leaves the address, and a reload keeps the view", async () => {
   const { page, close } = await open("v=recordings&file=quiet.csv");
-  assert.doesNotMatch(page.url(), /token/);
+  assert.doesNotMatch(String(await address(page)), /token/);
   await page.reload();
   await page.waitForSelector('[role=option][aria-selected=true] >> text=quiet.csv');
   await close();
@@ -68,14 +68,14 @@ test("the list shows what inspect says, and its keys work", async () => {
   await shot(page, "recordings-light");
   await page.keyboard.press("Enter");
   await page.waitForSelector(".strip canvas");
-  assert.match(page.url(), /v=recording&/);
+  assert.match(String(await address(page)), /v=recording&/);
   await close();
 });
 
 test("a recording is zoomed, panned and reset, and a stretch goes to an analysis", async () => {
   const { page, close } = await open("v=recording&file=rig.csv");
   await page.waitForSelector("text=/In view 0.00 – (20|19)/");
-  const view = () => { const at = new URL(page.url()).searchParams; return [Number(at.get("from")), Number(at.get("to"))]; };
+  const view = async () => { const at = (await address(page)).searchParams; return [Number(at.get("from")), Number(at.get("to"))]; };
   const canvas = page.locator('canvas[aria-label="acc1_x against time"]');
   await canvas.waitFor();
   await page.waitForSelector(".head >> text=nothing wrong with it");
@@ -86,17 +86,21 @@ test("a recording is zoomed, panned and reset, and a stretch goes to an analysis
   await page.mouse.move(box.x + box.width * 0.6, box.y + 40, { steps: 4 });
   await page.mouse.up();
   await page.waitForFunction(() => location.search.includes("from="), null, { timeout: 8000 });
-  const zoomed = view();
+  const zoomed = await view();
   assert.ok(zoomed[0] > 6 && zoomed[1] < 14 && zoomed[1] - zoomed[0] > 3, String(zoomed));
   await page.mouse.wheel(0, -400);
-  await page.waitForTimeout(100);
-  assert.ok(view()[1] - view()[0] < zoomed[1] - zoomed[0]);
+  await page.waitForFunction((before) => new URLSearchParams(location.search).get("from") > before, zoomed[0]);
+  const closer = await view();
+  assert.ok(closer[1] - closer[0] < zoomed[1] - zoomed[0], String(closer));
   await page.keyboard.press("ArrowRight");
-  assert.ok(view()[0] > zoomed[0]);
+  const panned = await view();
+  assert.ok(panned[0] > closer[0], String(panned));
   await page.keyboard.press("f");
-  assert.ok(view()[0] === 0 && Math.abs(view()[1] - 19.995) < 1e-6, String(view()));
+  const fitted = await view();
+  assert.ok(fitted[0] === 0 && Math.abs(fitted[1] - 19.995) < 1e-6, String(fitted));
   await page.keyboard.press("Backspace");
-  assert.ok(view()[0] > 0);
+  const back = await view();
+  assert.ok(Math.abs(back[0] - panned[0]) < 1e-9 && Math.abs(back[1] - panned[1]) < 1e-9, `${back}, not ${panned}`);
   await page.keyboard.press("f");
   // Cursors: mean and rms of a whole number of turns are those of the file.
   await page.goto(`${base()}/?v=recording&file=rig.csv&a=5&b=10&stretch=2,6`);
@@ -152,9 +156,9 @@ test("noise of two recordings, their downloads, and the two compared", async () 
   await page.keyboard.press("ArrowRight");
   assert.notEqual(await page.locator(".legend thead th").nth(1).innerText(), first);
   await shot(page, "noise-light");
-  const one = new URL(page.url()).searchParams.get("run");
+  const one = (await address(page)).searchParams.get("run");
   await run(page, "noise", "loud.csv");
-  const two = new URL(page.url()).searchParams.get("run");
+  const two = (await address(page)).searchParams.get("run");
   await page.goto(`${base()}/?v=compare&runs=${one},${two}`);
   await page.waitForSelector(".uplot");
   const rows = await page.locator("section[aria-label=Figures]").innerText();
