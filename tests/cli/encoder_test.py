@@ -1,9 +1,9 @@
-"""proofmass calibrate --encoder, on a wheel whose encoder is known."""
+"""proofmass calibrate --encoder and wheel --encoder, on a wheel whose encoder is known."""
 import math
 import random
 import tomllib
 
-from command import USAGE, CommandTest, parse_json
+from command import FAILED, USAGE, CommandTest, parse_json
 
 G, RATE_HZ, COUNTS = 9.81, 200, 2048
 ECCENTRICITY, PHASE = 0.005, 0.7
@@ -70,12 +70,32 @@ class Encoder(CommandTest):
         once = self.calibrated("--wrap", 4096)["harmonics"][0]
         self.assertAlmostEqual(once["amplitude"]["value"], ECCENTRICITY, delta=0.001)
 
+    def test_the_wheel_uses_it(self):
+        self.write("wheel.csv", wheel(missed_at=30))
+        flags = "--spin-axis", "z", "--index", "index"
+        alone = parse_json(self.succeed("wheel", "wheel.csv", *flags[:2], "--json", "-"))
+        self.assertIsNone(alone["encoder"])
+        text = self.succeed("wheel", "wheel.csv", "--encoder", "--counts-per-turn", COUNTS, *flags, "--json", "-")
+        found = parse_json(text)
+        self.check_document("wheel", found)
+        self.assertLess(found["peak_speed_rpm"]["std"], 0.5 * alone["peak_speed_rpm"]["std"])
+        self.assertAlmostEqual(found["turns"]["value"], alone["turns"]["value"], delta=4 * found["turns"]["std"])
+        encoder = found["encoder"]
+        self.assertEqual(encoder["channel"], "encoder")
+        self.assertFalse(encoder["reversed"])
+        once = encoder["once_cos_rad"]
+        self.assertAlmostEqual(once["value"], ECCENTRICITY * math.cos(PHASE), delta=4 * once["std"])
+        self.assertEqual([slip["counts"] for slip in encoder["missed_counts"]], [-2])
+
     def test_says_what_it_needs(self):
         self.write("wheel.csv", wheel(20))
         self.assertIn("--counts-per-turn", self.expect_failure(USAGE, "calibrate", "wheel.csv", "--encoder"))
         self.expect_failure(USAGE, "calibrate", "wheel.csv", "--encoder", "--counts-per-turn", COUNTS,
                             "--encoder-channel", "absent")
         self.expect_failure(USAGE, "calibrate", "wheel.csv", "--encoder", "--counts-per-turn", COUNTS, "--means")
+        self.assertIn("--counts-per-turn", self.expect_failure(USAGE, "wheel", "wheel.csv", "--encoder"))
+        self.assertIn("--counts-per-turn", self.expect_failure(FAILED, "wheel", "wheel.csv", "--encoder",
+                                                            "--counts-per-turn", 4 * COUNTS))
 
 
 if __name__ == "__main__":

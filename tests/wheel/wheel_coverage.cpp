@@ -29,6 +29,9 @@ void compare(const estimate::WheelSolution& said, const Truth& truth, Coverage& 
     }
     into.skew.add(fit.skew_rad, unit.skew_rad);
   }
+  if (said.encoder)
+    for (std::size_t i = 0; i < 4; ++i)
+      into.encoder.add(said.encoder->errors_rad[i], truth.encoder_errors_rad[i]);
 }
 
 void print_one(const char* scenario, std::uint64_t seed, const Coverage& one) {
@@ -45,6 +48,7 @@ void print_one(const char* scenario, std::uint64_t seed, const Coverage& one) {
   print("bias", one.bias);
   print("scale", one.scale);
   print("skew", one.skew);
+  if (one.encoder.given() + one.encoder.none > 0) print("encoder", one.encoder);
   std::printf("\n");
 }
 
@@ -55,6 +59,7 @@ void append(Coverage& to, const Coverage& from) {
   to.bias.append(from.bias);
   to.scale.append(from.scale);
   to.skew.append(from.skew);
+  to.encoder.append(from.encoder);
   to.recordings += from.recordings;
   to.refused += from.refused;
 }
@@ -100,7 +105,9 @@ Coverage coverage_of(const Scenario& scenario, std::uint64_t first, int count, b
       const std::uint64_t seed = first + static_cast<std::uint64_t>(i);
       const World world = scenario.draw(seed);
       const Recorded recorded = record(world, seed);
-      const auto said = estimate::estimate_wheel(recorded.sensors, scenario.options(world));
+      estimate::WheelOptions options = scenario.options(world);
+      options.encoder = recorded.encoder;
+      const auto said = estimate::estimate_wheel(recorded.sensors, options);
       Coverage one;
       one.recordings = 1;
       if (said)

@@ -16,7 +16,7 @@ using proofmass::wheel_world::Tally;
 
 void cell(const Tally& tally) {
   if (tally.given() == 0) {
-    std::printf(" none |");
+    std::printf(tally.none > 0 ? " none |" : " |");
     return;
   }
   const double given = static_cast<double>(tally.given());
@@ -35,14 +35,15 @@ void print_header(bool live) {
         "|---|---|---|---|---|---|---|---|\n");
   else
     std::printf(
-        "| scenario | refused | turns | final angle | radius | bias | scale | skew |\n"
-        "|---|---|---|---|---|---|---|---|\n");
+        "| scenario | refused | turns | final angle | radius | bias | scale | skew | encoder's "
+        "errors |\n"
+        "|---|---|---|---|---|---|---|---|---|\n");
 }
 
 void print_row(const Scenario& scenario, const Coverage& found) {
   std::printf("| %s | %zu |", scenario.name, found.refused);
-  for (const Tally* tally :
-       {&found.turns, &found.angle, &found.radius, &found.bias, &found.scale, &found.skew})
+  for (const Tally* tally : {&found.turns, &found.angle, &found.radius, &found.bias, &found.scale,
+                             &found.skew, &found.encoder})
     cell(*tally);
   std::printf("\n");
 }

@@ -32,7 +32,8 @@ TEST_P(WheelCoverage, IsAsStated) {
   // Pushes by hand and a speed with 1 % ripple are known to make the constants slightly
   // overconfident (docs/methods/wheel.md); an interval with a coverage of one half would be
   // useless.
-  for (const Tally* tally : {&found.radius, &found.bias, &found.scale, &found.skew}) {
+  for (const Tally* tally :
+       {&found.radius, &found.bias, &found.scale, &found.skew, &found.encoder}) {
     if (tally->given() == 0) continue;
     EXPECT_GE(tally->coverage_95(), least_coverage(tally->given()) - 0.1);
     EXPECT_LT(tally->largest(), 8.0);

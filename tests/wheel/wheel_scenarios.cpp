@@ -35,6 +35,10 @@ class Draw {
     return *(courses.begin() +
              static_cast<int>(random_.unit() * static_cast<double>(courses.size())));
   }
+  int one_of_counts() {
+    constexpr std::array counts{100, 512, 1440, 4096, 16384};
+    return counts[static_cast<std::size_t>(random_.unit() * static_cast<double>(counts.size()))];
+  }
   /// Limits the fastest sample to an eighth of a turn.
   double speed_within(double low_rpm, double high_rpm) {
     return log_between(low_rpm, high_rpm) * radps_per_rpm;
@@ -171,6 +175,33 @@ World with_gyro(std::uint64_t seed) {
   return draw.world();
 }
 
+Encoder draw_encoder(Draw& draw) {
+  return {draw.one_of_counts(),    draw.unit_random() < 0.5,   0.01 * draw.unit_random(),
+          draw.between(0.0, 6.28), 0.002 * draw.unit_random(), draw.between(0.0, 6.28)};
+}
+
+World with_encoder(std::uint64_t seed) {
+  Draw draw(seed);
+  draw.world().course = draw.one_of(bench);
+  draw.world().encoder = draw_encoder(draw);
+  return draw.world();
+}
+
+World pushed_with_encoder(std::uint64_t seed) {
+  World world = pushed(seed);
+  Draw draw(seed + 1'000'000);
+  world.stamps_by_wifi = false;
+  world.encoder = draw_encoder(draw);
+  return world;
+}
+
+World pair_with_encoder(std::uint64_t seed) {
+  World world = pair(seed);
+  Draw draw(seed + 1'000'000);
+  world.encoder = draw_encoder(draw);
+  return world;
+}
+
 World coarse(std::uint64_t seed) {
   Draw draw(seed);
   draw.world().course = draw.one_of(bench);
@@ -224,6 +255,9 @@ constexpr std::array all{
     Scenario{"pushed-gyro", "the same with a gyroscope", pushed_with_gyro, axis_given},
     Scenario{"gyro", "a bench with a gyroscope", with_gyro, axis_given},
     Scenario{"pair", "two sensors", pair, axis_given},
+    Scenario{"encoder", "a bench with an encoder", with_encoder, axis_given},
+    Scenario{"pair-encoder", "two sensors and an encoder", pair_with_encoder, axis_given},
+    Scenario{"pushed-encoder", "a wheelchair's with an encoder", pushed_with_encoder, axis_given},
     Scenario{"coarse", "converter steps of 3 to 6 times the noise", coarse, axis_given},
     Scenario{"all-at-once", "ripple, tilt, pole and warm-up", all_at_once, axis_given},
 };

@@ -251,6 +251,35 @@ class Rows {
   std::vector<double> gyro_;
 };
 
+/// Angle that the head of an encoder sees at an angle of the axle.
+double seen_by(const Encoder& encoder, double angle) {
+  const double towards = angle + encoder.eccentricity_phase;
+  const double about_centre = std::atan2(-encoder.eccentricity * std::sin(towards),
+                                         1.0 - encoder.eccentricity * std::cos(towards));
+  const double seen =
+      angle - about_centre + encoder.warp_rad * std::cos(2.0 * angle + encoder.warp_phase);
+  return encoder.reversed ? -seen : seen;
+}
+
+/// Fourier coefficients of the seen angle less the axle's, over the seen angle.
+std::array<double, 4> errors_of(const Encoder& encoder) {
+  constexpr int points = 3600;
+  const double d = encoder.reversed ? -1.0 : 1.0;
+  std::array<double, 4> sums{};
+  double before = seen_by(encoder, -2.0 * pi / points);
+  for (int i = 0; i < points; ++i) {
+    const double angle = 2.0 * pi * i / points, seen = seen_by(encoder, angle);
+    const double error = seen - d * angle,
+                 width = 0.5 * std::abs(seen_by(encoder, angle + 2.0 * pi / points) - before);
+    before = seen;
+    for (std::size_t n = 1; n <= 2; ++n) {
+      sums[2 * n - 2] += error * std::cos(static_cast<double>(n) * seen) * width / pi;
+      sums[2 * n - 1] += error * std::sin(static_cast<double>(n) * seen) * width / pi;
+    }
+  }
+  return sums;
+}
+
 /// Packet stamps: all rows of a packet have about the time of its arrival, delayed by the radio
 /// link.
 class Stamps {
@@ -299,6 +328,8 @@ Recorded record(const World& world, std::uint64_t seed) {
   const auto last_row = static_cast<std::size_t>(std::floor(world.duration_s * world.rate_hz));
   std::size_t row = 0;
   double t = -lead_s, last_t = 0.0;
+  std::vector<double> seen_rad;
+  const double count_rad = world.encoder ? 2.0 * pi / world.encoder->counts_per_turn : 0.0;
   // The angle one step before, now, and one step after.
   std::array<double, 3> angle{};
   angle[1] = world.start_angle_rad;
@@ -340,12 +371,20 @@ Recorded record(const World& world, std::uint64_t seed) {
           f[c] = before[i][c] + share * (outputs[i].values()[c] - before[i][c]);
         rows[i].add(at, stamp_s, f, at - last_t, out.sensors[i]);
       }
+      if (world.encoder)
+        seen_rad.push_back(count_rad * std::floor(seen_by(*world.encoder, angle_then) / count_rad));
       last_t = at;
     }
     t += step_s;
     angle = {angle[1], angle[2], motion.next(t, angle[2])};
   }
   out.truth.units = world.units;
+  if (world.encoder) {
+    out.encoder = estimate::WheelEncoder{
+        "encoder", signal::fixes_of_samples(out.sensors[0].time_s, seen_rad, count_rad, 0.0),
+        count_rad};
+    out.truth.encoder_errors_rad = errors_of(*world.encoder);
+  }
   // Only about the axle: the other two axes of a gyroscope on a wheel measure almost nothing.
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].gyro().empty()) continue;

@@ -22,6 +22,15 @@ struct Gyro {
   double scale = 1.0, bias_radps = 0.0, noise_radps = 0.003;
 };
 
+/// An encoder on the axle, read with the first unit's rows: the head sees the angle about the
+/// centre of a disc that is off the axle and warped.
+struct Encoder {
+  int counts_per_turn = 4096;
+  bool reversed = false;
+  double eccentricity = 0.0, eccentricity_phase = 0.0;  ///< of the disc's radius
+  double warp_rad = 0.0, warp_phase = 0.0;
+};
+
 /// Time before the first row, for the filters to settle.
 inline constexpr double lead_s = 0.05;
 
@@ -51,6 +60,7 @@ struct World {
   double jitter = 0.0, missing = 0.0;  ///< relative to the period; fraction of rows
   bool stamps_by_wifi = false;         ///< rows arrive in bursts and are stamped on arrival
   std::vector<Unit> units;
+  std::optional<Encoder> encoder;
 };
 
 /// True values of a recording.
@@ -61,10 +71,12 @@ struct Truth {
   std::vector<Unit> units;
   /// Biases at the end, including random walk and warm-up.
   std::vector<std::array<double, 2>> final_bias_mps2;
+  std::array<double, 4> encoder_errors_rad{};  ///< c1 s1 c2 s2, to second order
 };
 
 struct Recorded {
   std::vector<estimate::WheelSensor> sensors;
+  std::optional<estimate::WheelEncoder> encoder;
   Truth truth;
 };
 

@@ -180,6 +180,7 @@ EncoderChannel encoder_of(const Recording& recording,
                      .step_rad = scale.step_rad,
                      .counts_per_turn = flags.counts_per_turn,
                      .has_index = false,
+                     .absolute = channel.unit.quantity == Quantity::angle,
                      .index_slips = {}};
   if (unwrapped.glitches > 0)
     notes.push_back(

@@ -28,6 +28,7 @@ struct EncoderChannel {
   double step_rad = 0.0;
   std::optional<double> counts_per_turn;
   bool has_index = false;
+  bool absolute = false;                       ///< an angle, not counts
   std::vector<signal::CountSlip> index_slips;  ///< between two pulses
 };
 

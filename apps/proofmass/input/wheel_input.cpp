@@ -11,6 +11,7 @@
 #include "input/gyroscope.hpp"
 #include "input/input.hpp"
 #include "proofmass/sensor/calibration.hpp"
+#include "proofmass/sensor/encoder_update.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -35,6 +36,35 @@ void keep_notes(const std::vector<Recording>& recordings, std::vector<Note>& not
       notes.push_back(note.at(several ? recording.source : ""));
     }
   }
+}
+
+// The calibrated errors refer to the encoder's zero, which only an index or an absolute angle
+// keeps.
+estimate::WheelEncoder wheel_encoder(const Recording& recording,
+                                     const EncoderFlags& flags,
+                                     const InputFlags& input,
+                                     double begin_s,
+                                     const sensor::SensorModel* model,
+                                     std::vector<Note>& notes) {
+  EncoderChannel channel = encoder_of(recording, flags, input, notes);
+  for (double& time : channel.fixes.time_s) time += begin_s;
+  for (const signal::CountSlip& slip : channel.index_slips)
+    notes.push_back({Severity::warning,
+                     fmt::format("{}: {:+d} counts between the index pulses at {:.1f} and {:.1f} s "
+                                 "that do not belong to whole turns",
+                                 channel.name, slip.counts, slip.start_s, slip.end_s)});
+  estimate::WheelEncoder out{channel.name, std::move(channel.fixes), channel.step_rad};
+  if (model == nullptr) return out;
+  const auto errors = sensor::encoder_errors_rad(model->encoder);
+  if (errors && (channel.has_index || channel.absolute))
+    out.errors_rad = *errors;
+  else if (errors)
+    notes.push_back({Severity::info,
+                     channel.name +
+                         ": the encoder's calibration in the sensor file is not used: without an "
+                         "index pulse the zero of the count is not that of the calibration",
+                     {Advice{"index"}}});
+  return out;
 }
 
 }  // namespace
@@ -71,9 +101,12 @@ estimate::WheelSensor wheel_sensor(const Recording& recording,
 }
 
 WheelInput wheel_input(const std::vector<std::string>& files,
-                       const InputFlags& flags,
+                       const InputFlags& all_flags,
                        const GyroscopeUse& gyroscope,
+                       const EncoderFlags& encoder,
                        const OutputFlags& output) {
+  InputFlags flags = all_flags;
+  if (encoder.wanted) read_encoder_too(encoder, flags);
   WheelInput input;
   std::vector<Recording> recordings;
   for (const std::string& file : files) {
@@ -107,6 +140,9 @@ WheelInput wheel_input(const std::vector<std::string>& files,
     input.sensors.push_back(wheel_sensor(recording, one, begin_s, gyroscope,
                                          sensor_model_of(models, input.sensors.size()),
                                          input.notes));
+    if (encoder.wanted && !input.encoder && one.recording == 0)
+      input.encoder = wheel_encoder(recording, encoder, flags, begin_s, sensor_model_of(models, 0),
+                                    input.notes);
   }
   if (!models.empty()) {
     input.alignment_std_rad = sensor::alignment_std_rad(models.front()).value_or(0.0);

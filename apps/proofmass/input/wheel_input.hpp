@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/common_flags.hpp"
+#include "input/encoder.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/estimate/wheel.hpp"
 #include "proofmass/sensor/calibrated_channels.hpp"
@@ -17,6 +18,7 @@ struct WheelInput {
   bool clocks_shared = true;
   double alignment_std_rad = 0.0;
   std::optional<double> bandwidth_hz{};  ///< from the sensor file
+  std::optional<estimate::WheelEncoder> encoder{};
   std::vector<Note> notes;
 };
 
@@ -35,11 +37,12 @@ struct GyroscopeUse {
                                                  const sensor::SensorModel* model,
                                                  std::vector<Note>& notes);
 
-/// One or two accelerometers of one run, calibrated and in m/s^2, with their gyroscopes. Throws
-/// Failure.
+/// One or two accelerometers of one run, calibrated and in m/s^2, with their gyroscopes, and the
+/// encoder in the first file, if wanted. Throws Failure.
 [[nodiscard]] WheelInput wheel_input(const std::vector<std::string>& files,
                                      const InputFlags& flags,
                                      const GyroscopeUse& gyroscope,
+                                     const EncoderFlags& encoder,
                                      const OutputFlags& output);
 
 }  // namespace proofmass::app

@@ -4,6 +4,7 @@
 #include "cli/exit_status.hpp"
 #include "cli/flags.hpp"
 #include "cli/output.hpp"
+#include "input/encoder.hpp"
 #include "input/input.hpp"
 #include "input/wheel_input.hpp"
 #include "proofmass/report/wheel/report.hpp"
@@ -19,6 +20,7 @@ struct WheelCommand {
       axle_tilt_std_deg;
   bool no_gyro = false;
   std::string rate_unit = "rad/s";
+  EncoderFlags encoder;
   InputFlags input;
   OutputFlags output;
 };
@@ -63,6 +65,9 @@ void add_wheel_flags(CLI::App& verb, WheelCommand& command) {
                   "radius of the rim, whose path length is the distance")
       ->type_name("M")
       ->check(positive());
+  add_encoder_flags(verb, command.encoder,
+                    "use the encoder on the axle, recorded in the first FILE, as a further "
+                    "measurement");
   add_input_flags(verb, command.input);
   add_switch_on_flag(
       verb, command.input,
@@ -85,11 +90,13 @@ void run_wheel(const WheelCommand& command) {
   if (command.axle_tilt_std_deg)
     report.options.axle_tilt_std_rad = *command.axle_tilt_std_deg * rad_per_deg;
   report.options.gravity_mps2 = gravity_mps2(command.input);
-  WheelInput input = wheel_input(command.files, command.input,
-                                 {!command.no_gyro, command.rate_unit}, command.output);
+  WheelInput input =
+      wheel_input(command.files, command.input, {!command.no_gyro, command.rate_unit},
+                  command.encoder, command.output);
   report.options.bandwidth_hz = command.bandwidth_hz ? command.bandwidth_hz : input.bandwidth_hz;
   report.notes = std::move(input.notes);
   report.options.clocks_shared = input.clocks_shared;
+  report.options.encoder = std::move(input.encoder);
   report.options.alignment_std_rad = input.alignment_std_rad;
   report.options.progress = progress_bar(command.output);
   report.solution = need(estimate::estimate_wheel(input.sensors, report.options), Stage::computing);

@@ -88,7 +88,8 @@ InputFlags wheel_flags(const ThesisCommand& command) {
 thesis::WheelRecord wheel_record(const std::string& file,
                                  const ThesisCommand& command,
                                  std::vector<Note>& notes) {
-  WheelInput input = wheel_input({file}, wheel_flags(command), {.wanted = false}, command.output);
+  WheelInput input =
+      wheel_input({file}, wheel_flags(command), {.wanted = false}, {}, command.output);
   keep_notes(file, std::move(input.notes), notes);
   thesis::WheelRecord record;
   record.source = file;

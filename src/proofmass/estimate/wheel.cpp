@@ -159,6 +159,20 @@ void add_sensor(const WheelSensor& sensor,
                               {Advice{"spin-axis"}}});
 }
 
+void add_encoder(const EncoderTrack& along, WheelSolution& solution) {
+  solution.encoder.emplace();
+  solution.encoder->name = along.encoder.name;
+  solution.encoder->missed = along.missed;
+  if (along.missed.empty()) return;
+  char first[32];
+  std::snprintf(first, sizeof first, "%.1f", along.missed.front().time_s);
+  const std::string times =
+      along.missed.size() == 1 ? "" : std::to_string(along.missed.size()) + " times, first ";
+  solution.notes.push_back({Severity::warning, along.encoder.name + ": counts were missed " +
+                                                   times + "at " + first +
+                                                   " s, as gravity shows; they are added again"});
+}
+
 /// Epochs at which the gate rejected every available channel, as intervals.
 void add_gated(WheelSolution& solution) {
   const WheelSeries& series = solution.series;
@@ -231,9 +245,8 @@ void note_travel(const WheelReadings& readings, WheelSolution& solution) {
   solution.notes.push_back(
       {Severity::info,
        "the wheel vibrates like a vehicle's, whose acceleration and braking tilt the "
-       "apparent gravity by rolling radius x angular acceleration / g: the rolling radius is "
-       "assumed "
-       "as " +
+       "apparent gravity by rolling radius x angular acceleration / g: the rolling radius is " +
+           std::string(readings.found_rolling_radius_m ? "estimated" : "assumed") + " as " +
            std::to_string(std::lround(rolling.value * 1e3)) + " mm ± " +
            std::to_string(std::lround(rolling.std * 1e3)) +
            " mm, which makes the angle uncertain by up to " +
@@ -295,9 +308,15 @@ Result<WheelSolution> conclude(const WheelReadings& readings,
   add_peak_speed(solution);
   solution.consistency = std::move(fit.consistency);
   constexpr std::array names{" along u", " along v", " gyroscope"};
-  const std::size_t each = solution.consistency.channels.size() / solution.sensors.size();
-  for (std::size_t i = 0; i < solution.consistency.channels.size(); ++i)
-    solution.consistency.channels[i].name = solution.sensors[i / each].name + names[i % each];
+  auto& channels = solution.consistency.channels;
+  std::size_t of_sensors = channels.size();
+  if (readings.encoder) {
+    describe_encoder(fit, *readings.encoder, solution.sensors.size(), *solution.encoder);
+    channels[--of_sensors].name = solution.encoder->name;
+  }
+  const std::size_t each = of_sensors / solution.sensors.size();
+  for (std::size_t i = 0; i < of_sensors; ++i)
+    channels[i].name = solution.sensors[i / each].name + names[i % each];
   solution.not_observable = say_not_observable(fit, solution.sensors);
   add_gated(solution);
   note_travel(readings, solution);
@@ -314,6 +333,7 @@ Result<WheelSolution> estimate_wheel(const std::vector<WheelSensor>& sensors,
   auto pair = fit_singles(sensors, options);
   if (!pair) return pair.error();
   WheelSolution solution;
+  if (const auto& along = pair->singles[0].encoder) add_encoder(*along, solution);
   for (std::size_t s = 0; s < sensors.size(); ++s)
     add_sensor(sensors[s], pair->singles[s], options.spin_axis.has_value(), solution);
   if (sensors.size() == 1)

@@ -12,6 +12,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/estimate/consistency.hpp"
+#include "proofmass/signal/encoder.hpp"
 
 // Wheel angle from one or two accelerometers mounted on it.
 namespace proofmass::estimate {
@@ -27,6 +28,19 @@ struct WheelSensor {
   /// Angular rate in the same axes, as long as time_s; empty without a gyroscope, NaN where
   /// missing.
   std::array<std::vector<double>, 3> rate_radps{};
+};
+
+/// An encoder on the axle, on the clock of the first sensor.
+struct WheelEncoder {
+  std::string name;          ///< of its channel
+  signal::AngleFixes fixes;  ///< its own angle, of any zero and direction
+  double step_rad = 0.0;     ///< width of a count; 0: no visible steps
+  /// Calibrated errors (c, s) once and twice a turn: ψ = θ + Σ c_n cos nψ + s_n sin nψ, with ψ = 0
+  /// as in the calibration. Default: a disc off centre by about a twentieth of its radius.
+  std::optional<std::array<Uncertain, 4>> errors_rad{};
+  /// Standard deviation of the accelerometers' nonlinearity at 1 g: it resembles the errors once
+  /// and twice a turn (docs/methods/encoder.md).
+  double nonlinearity = 2e-4;
 };
 
 struct WheelOptions {
@@ -49,6 +63,7 @@ struct WheelOptions {
   /// of turns.
   double alignment_std_rad = 0.0;
   bool clocks_shared = true;  ///< false: two sensors with unrelated clocks
+  std::optional<WheelEncoder> encoder{};
   Progress progress;
 };
 
@@ -78,6 +93,16 @@ struct WheelSensorFit {
   std::size_t samples = 0;
   std::size_t unusable = 0;  ///< rows dropped before the filter: not finite, or implausible
   std::size_t gated = 0;     ///< rows rejected by the gate
+};
+
+/// The encoder as estimated from the recording: d ψ = θ + o + d Σ c_n cos nψ + s_n sin nψ.
+struct WheelEncoderFit {
+  std::string name;
+  double direction = 1.0;               ///< d; −1 if its angle falls where the wheel's rises
+  std::optional<Uncertain> offset_rad;  ///< o at the end, within half a turn
+  std::array<std::optional<Uncertain>, 4> errors_rad{};  ///< c₁, s₁, c₂, s₂
+  double noise_rad = 0.0;  ///< standard deviation of one of its angles, from counts and innovations
+  std::vector<signal::CountSlip> missed;  ///< counts missed at once, which were added again
 };
 
 /// One value for each epoch of the merged time line; `angle` counts turns, 0 = first in-plane axis
@@ -119,6 +144,7 @@ struct WheelSolution {
   std::optional<Uncertain> peak_speed_radps;
   Uncertain delay_s{};  ///< of the sensors' filters, as given or as estimated
   std::vector<WheelSensorFit> sensors;
+  std::optional<WheelEncoderFit> encoder;
   WheelMethod double_integration, atan2, ekf, smoother;
   Consistency consistency;
   std::size_t rejected_samples = 0;  ///< rows of any sensor that no estimate used
@@ -133,7 +159,8 @@ struct WheelSolution {
 /// sensors' biases, scales, radii and mounting angles as far as they are observable.
 ///
 /// Errors: invalid_argument (no sensor, unequal lengths, an axis of length 0, non-ascending time),
-/// too_few_samples, not_observable (no spin axis can be found).
+/// too_few_samples, not_observable (no spin axis can be found, or gravity does not rotate with the
+/// encoder's angle).
 [[nodiscard]] Result<WheelSolution> estimate_wheel(const std::vector<WheelSensor>& sensors,
                                                    const WheelOptions& options);
 

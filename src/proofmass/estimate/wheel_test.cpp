@@ -294,6 +294,74 @@ TEST(EstimateWheel, SaysHowManyReadingsOfASaturatedGyroscopeItLeavesOut) {
   EXPECT_EQ(noted(-1.0), "unused sensor: the gyroscope's output is constant, and is not used");
 }
 
+/// Counts of an encoder whose disc is off centre by 0.5 %, `lost` of them missed from a time on.
+WheelEncoder encoder_of(const Drive& drive,
+                        const std::vector<double>& time_s,
+                        double direction = 1.0,
+                        double lost = 0.0,
+                        double from_s = 0.0) {
+  WheelEncoder encoder;
+  encoder.name = "encoder";
+  encoder.step_rad = rad_per_turn / 2048.0;
+  std::vector<double> counts_rad;
+  for (const double t : time_s) {
+    const double angle = drive.at(t).angle_rad + 0.4;
+    const double shown = direction * (angle + 0.005 * std::cos(angle)) / encoder.step_rad;
+    counts_rad.push_back(encoder.step_rad * (std::floor(shown) - (t > from_s ? lost : 0.0)));
+  }
+  encoder.fixes = signal::fixes_of_samples(time_s, counts_rad, encoder.step_rad, 0.0);
+  return encoder;
+}
+
+const Drive there_and_on{{0.3, 0.0}, {{1.0, 0.0}, {2.0, 60 * rpm}, {30.0, 60 * rpm}, {3.0, 0.0}}};
+
+TEST(EstimateWheel, AnEncoderSharpensTheAngleAndIsCalibratedByGravity) {
+  const WheelSensor sensor = record(there_and_on, {}, 200.0, 8);
+  const auto alone = solve({sensor});
+  for (const double direction : {1.0, -1.0}) {
+    const auto solution = solve(
+        {sensor}, with(&WheelOptions::encoder, encoder_of(there_and_on, sensor.time_s, direction)));
+    expect_turns(solution, there_and_on.turns(0.0, solution.series.time_s.back()), 1e-3);
+    // Alone, the unknown delay of the sensor is most of the angle's uncertainty.
+    EXPECT_LT(solution.series.angle_std_rad[4000], 0.2 * alone.series.angle_std_rad[4000]);
+    EXPECT_LT(std::abs(solution.series.angle_rad[4000] -
+                       there_and_on.at(solution.series.time_s[4000]).angle_rad),
+              4.0 * solution.series.angle_std_rad[4000]);
+    ASSERT_TRUE(solution.encoder);
+    EXPECT_EQ(solution.encoder->direction, direction);
+    EXPECT_TRUE(solution.encoder->missed.empty());
+    // d Σ c cos ψ + s sin ψ is 0.005 cos ψ.
+    const auto& errors = solution.encoder->errors_rad;
+    ASSERT_TRUE(errors[0] && errors[1]);
+    EXPECT_NEAR(errors[0]->value, direction * 0.005, 4.0 * errors[0]->std);
+    EXPECT_NEAR(errors[1]->value, 0.0, 4.0 * errors[1]->std);
+    EXPECT_LT(errors[0]->std, 5e-4);
+    ASSERT_TRUE(solution.encoder->offset_rad);
+    EXPECT_NEAR(std::remainder(solution.encoder->offset_rad->value - 0.4, rad_per_turn), 0.0,
+                4.0 * solution.encoder->offset_rad->std);
+  }
+}
+
+TEST(EstimateWheel, MissedCountsOfAnEncoderAreAddedAgain) {
+  const WheelSensor sensor = record(there_and_on, {}, 200.0, 8);
+  const auto solution =
+      solve({sensor},
+            with(&WheelOptions::encoder, encoder_of(there_and_on, sensor.time_s, 1.0, 4.0, 17.0)));
+  ASSERT_EQ(solution.encoder->missed.size(), 1U);
+  EXPECT_EQ(solution.encoder->missed[0].counts, -4);
+  EXPECT_NEAR(solution.encoder->missed[0].time_s, 17.0, 0.2);
+  expect_turns(solution, there_and_on.turns(0.0, solution.series.time_s.back()), 1e-3);
+}
+
+TEST(EstimateWheel, AnEncoderOfAnotherWheelIsNotUsed) {
+  const WheelSensor sensor = record(there_and_on, {}, 200.0, 8);
+  WheelEncoder other = encoder_of(there_and_on, sensor.time_s);
+  for (double& angle : other.fixes.angle_rad) angle *= 4.0;
+  const auto solution = estimate_wheel({sensor}, with(&WheelOptions::encoder, other));
+  ASSERT_FALSE(solution.has_value());
+  EXPECT_THAT(solution.error().message, testing::HasSubstr("does not rotate with the encoder"));
+}
+
 // Two seconds without accelerometer data, in which a turn could be missed without the gyroscope.
 TEST(EstimateWheel, AGyroscopeCountsThroughWhatTheAccelerometersMiss) {
   WheelSensor sensor = record(lively, {}, 60.0, 9);

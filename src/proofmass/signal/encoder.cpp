@@ -252,7 +252,8 @@ AngleFixes fixes_of_samples(View<double> time_s,
       const double speed = step_rad / since_s;
       add(time_s[k] - 0.5 * dt, edge, std::max(speed * dt * per_root_12, 1e-3 * step_rad));
     } else if (counts != 0.0) {
-      add(time_s[k], angle_rad[k] + 0.5 * step_rad, step_rad * per_root_12);
+      add(time_s[k] - 0.5 * dt, 0.5 * (angle_rad[k] + angle_rad[previous] + step_rad),
+          step_rad * per_root_12);
     } else if (time_s[k] - fixed_s > repeat_s) {
       add(time_s[k], angle_rad[k] + 0.5 * step_rad, step_rad * per_root_12);
       fixed_s = time_s[k];

@@ -29,7 +29,9 @@ struct AngleFixes {
 ///
 /// - a change by one count between two samples: the boundary between the counts, at the middle of
 ///   the interval, with the standard deviation ω Δt/√12 of the unknown moment;
-/// - a change by more: the middle of the count, step/√12;
+/// - a change by more: the mean of both counts' middles, at the middle of the interval, step/√12.
+///   (The angle at a sample is not uniform in its count: at one and a half counts a sample, after a
+///   change by two it is in the first half.)
 /// - no change: nothing. If nothing changes for half a second: the middle of the count once, since
 ///   later samples repeat that error.
 ///

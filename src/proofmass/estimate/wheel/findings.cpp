@@ -146,9 +146,26 @@ void describe_sensors(const WheelFit& fit, double phase_rad, std::vector<WheelSe
   }
 }
 
+void describe_encoder(const WheelFit& fit,
+                      const EncoderReadings& readings,
+                      std::size_t sensors,
+                      WheelEncoderFit& encoder) {
+  const int first = wheel::encoder(static_cast<int>(sensors)) - wheel::first_of(0);
+  encoder.direction = readings.direction;
+  double variance = 0.0, count = 0.0;
+  for (const double one : readings.variance_rad2)
+    if (std::isfinite(one)) variance += one, count += 1.0;
+  encoder.noise_rad = std::sqrt(variance / std::max(count, 1.0) + readings.more_variance_rad2);
+  encoder.offset_rad = determined(fit, first, readings.zero_rad);
+  if (encoder.offset_rad)
+    encoder.offset_rad->value = std::remainder(encoder.offset_rad->value, rad_per_turn);
+  for (std::size_t i = 0; i < encoder.errors_rad.size(); ++i)
+    encoder.errors_rad[i] = determined(fit, first + 1 + static_cast<int>(i));
+}
+
 std::vector<std::string> say_not_observable(const WheelFit& fit,
                                             const std::vector<WheelSensorFit>& sensors) {
-  // Ripple and gyroscope are nuisance parameters here.
+  // Ripple, gyroscope and encoder are nuisance parameters here.
   const int count = static_cast<int>(sensors.size());
   const Eigen::Index own = wheel::ripple(count) - wheel::first_of(0),
                      places_at = wheel::places(count) - wheel::first_of(0);

@@ -27,6 +27,12 @@ std::size_t channels_each(const WheelModel<S>& model) {
   return model.with_gyro ? 3 : 2;
 }
 
+/// Those of all sensors, then the encoder's.
+template <int S>
+std::size_t channels_of(const WheelModel<S>& model) {
+  return S * channels_each(model) + (model.encoder != nullptr ? 1 : 0);
+}
+
 template <int S>
 void note_forward(const WheelModel<S>& model,
                   std::size_t k,
@@ -37,16 +43,18 @@ void note_forward(const WheelModel<S>& model,
   unsigned char used = 0, gated = 0;
   const std::size_t each = channels_each(model);
   std::size_t next = 0;
+  const auto note = [&](std::size_t channel) {
+    const auto& u = step.updates[next++];
+    check.add(channel, u.innovation, u.expected, u.used);
+    nis += u.used ? u.nis() : 0.0;
+    ++(u.used ? used : gated);
+  };
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
     if (!model.has_readings(s, k)) continue;
     const std::size_t read = model.has_speed(s, k) ? 3 : 2;
-    for (std::size_t channel = each * s; channel < each * s + read; ++channel) {
-      const auto& u = step.updates[next++];
-      check.add(channel, u.innovation, u.expected, u.used);
-      nis += u.used ? u.nis() : 0.0;
-      ++(u.used ? used : gated);
-    }
+    for (std::size_t channel = each * s; channel < each * s + read; ++channel) note(channel);
   }
+  if (model.has_encoder(k)) note(each * S);
   fit.series.nis[k] = static_cast<float>(nis);
   fit.series.channels_used[k] = used;
   fit.series.channels_gated[k] = gated;
@@ -140,7 +148,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
   const auto prior = prior_state<S>(settled.prior);
   Gaussian<wheel::states(S)> end = prior.x;
   Mat<wheel::states(S)> first_mean = end.mean;
-  ConsistencyCheck check({.channels = std::vector<std::string>(S * channels_each(model)),
+  ConsistencyCheck check({.channels = std::vector<std::string>(channels_of(model)),
                           .rate_hz = readings.rate_hz(),
                           .gate = wheel_gate.limit});
   AngleColour<S> colour;
@@ -375,6 +383,22 @@ void add_gravity_uncertainty(const WheelReadings& readings,
   fit.constants_cov += change * change.transpose();
 }
 
+/// An accelerometer's nonlinearity κ at 1 g resembles errors of the encoder once a turn, of κ/√2 in
+/// each component, and twice a turn, of half of that (docs/methods/encoder.md).
+template <int S>
+void add_nonlinearity(double nonlinearity, WheelFit& fit) {
+  constexpr int first = wheel::encoder(S) - wheel::first_of(0) + 1;
+  for (int n = 1; n <= wheel::encoder_orders; ++n)
+    for (int i = 0; i < 2; ++i) {
+      const int at = first + 2 * (n - 1) + i;
+      fit.constants_cov(at, at) += 0.5 * square(nonlinearity / n);
+    }
+  WheelSeries& series = fit.series;
+  for (std::vector<double>* std : {&series.angle_std_rad, &series.filtered_angle_std_rad})
+    for (double& value : *std) add_in_square(value, nonlinearity);
+  add_in_square(fit.turns.std, std::numbers::sqrt2 * nonlinearity / rad_per_turn);
+}
+
 /// Number of measurements that may be averaged before the wheel turns by a twentieth of a radian.
 std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack& track) {
   double fastest = 0.0;
@@ -439,6 +463,7 @@ WheelFit fit_sensors(WheelReadings& readings,
   spread_variance(coarse, each, readings);
   readings.rolling_radius_m = coarse.rolling_radius_m;
   readings.shakes = coarse.shakes;
+  if (readings.encoder) readings.encoder->more_variance_rad2 = coarse.encoder->more_variance_rad2;
   if (depth == FitDepth::track)
     return smooth_at_places(coarse, settled, coarse_track.path, progress);
   track = spread_track(coarse_track, coarse, readings);
@@ -450,22 +475,31 @@ WheelFit fit_sensors(WheelReadings& readings,
   fit.constants_prior_cov.template bottomRightCorner<2 * S, 2 * S>() = belief.cov;
   add_held_figures(settled, coarse, coarse_track.path, readings, track.path, fit);
   add_gravity_uncertainty<S>(readings, settled.places_cov * positive_inverse(belief.cov), fit);
+  if (readings.encoder) add_nonlinearity<S>(readings.encoder->nonlinearity, fit);
   fit.turns_candidates = turns_candidates(fit);
   return fit;
 }
 
 }  // namespace
 
+Uncertain combined(const Uncertain& a, const Uncertain& b) {
+  const double of_a = 1.0 / square(a.std), of_b = 1.0 / square(b.std);
+  return {(of_a * a.value + of_b * b.value) / (of_a + of_b), 1.0 / std::sqrt(of_a + of_b)};
+}
+
 void assume_rolling_radius(WheelReadings& readings) {
   constexpr double of_given = 0.03, vehicle_m = 0.4, smooth_m = 0.05;
   if (readings.given_rolling_radius_m) {
     const double given_m = *readings.given_rolling_radius_m;
     readings.rolling_radius_m = {given_m, of_given * given_m};
-  } else if (readings.shakes) {
-    readings.rolling_radius_m = {vehicle_m / 2.0, vehicle_m / std::numbers::sqrt3 / 2.0};
-  } else {
-    readings.rolling_radius_m = {0.0, smooth_m};
+    return;
   }
+  readings.rolling_radius_m =
+      readings.shakes ? Uncertain{vehicle_m / 2.0, vehicle_m / std::numbers::sqrt3 / 2.0}
+                      : Uncertain{0.0, smooth_m};
+  if (readings.found_rolling_radius_m)
+    readings.rolling_radius_m =
+        combined(readings.rolling_radius_m, *readings.found_rolling_radius_m);
 }
 
 WheelFit fit_wheel(WheelReadings& readings,

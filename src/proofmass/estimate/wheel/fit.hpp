@@ -18,16 +18,20 @@ struct WheelReadings {
   double gravity_mps2 = standard_gravity_mps2;  ///< its component in the plane of the wheel
   double gravity_std_mps2 = 0.0;                ///< due to the unknown axle tilt
   std::optional<double> given_rolling_radius_m;
-  Uncertain rolling_radius_m{};  ///< as set by assume_rolling_radius()
-  Uncertain delay_s{};           ///< of the sensors' filters
-  double phase_rad = 0.0;        ///< of the second sensor against the first, current estimate
+  std::optional<Uncertain> found_rolling_radius_m{};  ///< by an encoder
+  Uncertain rolling_radius_m{};                       ///< as set by assume_rolling_radius()
+  Uncertain delay_s{};                                ///< of the sensors' filters
+  double phase_rad = 0.0;  ///< of the second sensor against the first, current estimate
   RippleOrders orders = first_orders;
+  /// The wheel turns at one speed only, as an encoder shows; then nothing shows a lever arm.
+  bool one_speed = false;
   /// The hub vibrates by more than a sensor's noise, or more in motion than at rest, as under a
   /// vehicle; set by settle_variance().
   bool shakes = false;
   std::vector<double> time_s;
   std::vector<WheelInstant> instants;
   std::vector<PlanarReadings> sensors;
+  std::optional<EncoderReadings> encoder{};
 
   /// 1 / mean step, without gaps; 0 if there is no step.
   [[nodiscard]] double rate_hz() const;
@@ -42,14 +46,20 @@ struct ConstantsPrior {
   double bias_mps2 = 0.5, scale = 0.1, skew_rad = 0.03, phase_rad = 0.5, place_m = 0.3;
   double ripple = 0.0;  ///< of each part, relative to the speed
   double gyro_bias_radps = 0.1, gyro_scale = 0.03;
+  double encoder_offset_rad = 0.5;
+  EncoderErrors encoder_errors_rad{};  ///< with their means
 };
 
 /// Prior for less than one turn: gravity covers only part of its circle, on which bias, scale and
 /// angle are not separable, so the prior is tighter.
 inline constexpr ConstantsPrior short_way_prior{0.2, 0.01, 0.01, 0.5, 0.1};
 
-/// Assumed rolling radius if it is not given, from the vibration: a vehicle's, uniform between 0
-/// and 0.4 m, or a bench's 0, with the uncertainty of a small, smooth wheel.
+/// Two independent estimates of one quantity, weighted by their precision.
+[[nodiscard]] Uncertain combined(const Uncertain& a, const Uncertain& b);
+
+/// The rolling radius as given; or assumed from the vibration, a vehicle's, uniform between 0 and
+/// 0.4 m, or a bench's 0, with the uncertainty of a small, smooth wheel, and improved by the one
+/// found.
 void assume_rolling_radius(WheelReadings& readings);
 
 /// Initial motion of a filter.

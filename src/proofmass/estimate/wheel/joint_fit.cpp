@@ -145,7 +145,7 @@ Result<Single> fit_single(const WheelSensor& sensor,
                           Prepared prepared,
                           FitDepth depth,
                           const WheelOptions& options) {
-  Single single{std::move(prepared), {}, {}};
+  Single single{std::move(prepared), {}, {}, {}};
   single.readings = merge({&sensor}, {&single.prepared}, 0.0, options);
   if (single.readings.instants.size() < 10)
     return Error{Errc::too_few_samples, sensor.name + ": fewer than 10 usable rows"};
@@ -154,7 +154,17 @@ Result<Single> fit_single(const WheelSensor& sensor,
   const double fastest = fastest_radps(single.readings.rate_hz());
   bool followed = false;
   std::optional<Single> unsure;
-  for (std::size_t seek = 0; seek < wheel_seeks; ++seek) {
+  if (options.encoder) {
+    auto along = encoder_track(*options.encoder, single.readings);
+    if (!along) return along.error();
+    followed = along->track.lost <= not_a_wheel;
+    if (followed) single.fit = fit_with_radius(single.readings, along->track, depth, options);
+    if (followed && !has_lost(single.fit, along->track)) {
+      single.encoder = std::move(along).value();
+      return single;
+    }
+  }
+  for (std::size_t seek = 0; !options.encoder && seek < wheel_seeks; ++seek) {
     const WheelTrack track = find_track(single.readings, seek);
     if (track.lost > not_a_wheel) break;
     followed = true;
@@ -223,8 +233,11 @@ Eigen::VectorXd places_in(const WheelFit& fit, std::size_t sensors) {
 Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOptions& options) {
   Pair pair;
   const FitDepth depth = sensors.size() == 1 ? FitDepth::whole : FitDepth::track;
+  // The encoder is on the clock of the first sensor.
+  WheelOptions of_second = options;
+  if (!options.clocks_shared) of_second.encoder.reset();
   for (const WheelSensor& sensor : sensors) {
-    auto single = fit_single(sensor, depth, options);
+    auto single = fit_single(sensor, depth, pair.singles.empty() ? options : of_second);
     if (!single) return single.error();
     pair.singles.push_back(std::move(single).value());
   }
@@ -234,7 +247,7 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
   if (way < -1e-4 && !options.spin_axis) {
     Prepared other = pair.singles[1].prepared;
     other.plane = turned_over(other.plane);
-    auto again = fit_single(sensors[1], std::move(other), depth, options);
+    auto again = fit_single(sensors[1], std::move(other), depth, of_second);
     if (!again) return again.error();
     pair.singles[1] = std::move(again).value();
   }
@@ -261,6 +274,14 @@ Joint fit_jointly(const std::vector<WheelSensor>& sensors,
   joint.readings.phase_rad = pair.clocks.phase_rad;
   joint.readings.orders = one.readings.orders;
   joint.readings.delay_s = one.readings.delay_s;
+  if (one.readings.encoder) {
+    joint.readings.encoder = encoder_readings(one.encoder->encoder, joint.readings.time_s);
+    joint.readings.one_speed = one.readings.one_speed;
+    joint.readings.found_rolling_radius_m = one.readings.found_rolling_radius_m;
+    joint.readings.encoder->direction = one.readings.encoder->direction;
+    joint.readings.encoder->zero_rad = one.readings.encoder->zero_rad;
+    joint.readings.encoder->more_variance_rad2 = one.readings.encoder->more_variance_rad2;
+  }
   for (std::size_t s = 0; s < 2; ++s)
     joint.readings.sensors[s].variance_m2ps4 = pair.singles[s].readings.sensors[0].variance_m2ps4;
   WheelTrack track = one.fit.track;
@@ -278,8 +299,10 @@ Joint fit_jointly(const std::vector<WheelSensor>& sensors,
   track.path.standing.resize(wheel::standing(2));
   constexpr int between = wheel::gyro(1) - wheel::ripple(1);
   constexpr int ripple = wheel::ripple(1) - wheel::first_of(0), gyro = ripple + between;
+  constexpr int encoder = wheel::encoder(1) - wheel::first_of(0);
   track.path.standing << first.head<5>(), second.head<5>(), 0.0, first.segment<between>(ripple),
-      first.segment<2>(gyro), second.segment<2>(gyro), first.tail<2>(), second.tail<2>();
+      first.segment<2>(gyro), second.segment<2>(gyro),
+      first.segment<wheel::encoder_states>(encoder), first.tail<2>(), second.tail<2>();
   track.beginning.angle_rad = track.path.moving.front()(wheel::angle);
   joint.fit = fit_with_radius(joint.readings, track, FitDepth::whole, options);
   return joint;

@@ -4,6 +4,7 @@
 
 #include "proofmass/core/result.hpp"
 #include "proofmass/estimate/wheel/clock.hpp"
+#include "proofmass/estimate/wheel/encoder.hpp"
 #include "proofmass/estimate/wheel/fit.hpp"
 #include "proofmass/estimate/wheel/plane.hpp"
 
@@ -20,6 +21,7 @@ struct Single {
   Prepared prepared;
   WheelReadings readings;
   WheelFit fit;
+  std::optional<EncoderTrack> encoder{};
 };
 
 /// The single fits of a pair, the second with its axis reversed if needed so that both rotate in

@@ -126,6 +126,11 @@ WheelLevers levers_of(const WheelPath& path, const WheelReadings& readings) {
     const double w = path.moving[k](wheel::speed);
     sums[k + 1] = sums[k] + Mat<2>(w * w, path.moving[k](wheel::accel));
   }
+  if (readings.one_speed) {
+    // An encoder is so sharp that its own noise in Ω² would outweigh that of the accelerometers.
+    const Mat<2> mean = sums.back() / static_cast<double>(size);
+    return WheelLevers(size, Mat<2>(mean(0), 0.0));
+  }
   WheelLevers levers(size);
   for (std::size_t k = 0; k < size; ++k) {
     const double turn_s = rad_per_turn / std::abs(path.moving[k](wheel::speed));

@@ -34,6 +34,7 @@ WheelModel<S> wheel_model(const WheelReadings& readings, const WheelNoise& noise
   model.orders = readings.orders;
   model.noise = noise;
   model.instants = &readings.instants;
+  if (readings.encoder) model.encoder = &*readings.encoder;
   for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
     model.readings[s] = &readings.sensors[s];
     model.with_gyro = model.with_gyro || !readings.sensors[s].speed_radps.empty();
@@ -63,6 +64,13 @@ void reset_constants(const WheelPrior& prior, Gaussian<wheel::states(S)>& x) {
     const int at = wheel::gyro(S) + 2 * s;
     variance(at) = spread.gyro_bias_radps * spread.gyro_bias_radps;
     variance(at + 1) = spread.gyro_scale * spread.gyro_scale;
+  }
+  constexpr int encoder = wheel::encoder(S);
+  variance(encoder) = spread.encoder_offset_rad * spread.encoder_offset_rad;
+  for (int i = 1; i < wheel::encoder_states; ++i) {
+    const Uncertain& error = spread.encoder_errors_rad[static_cast<std::size_t>(i - 1)];
+    x.mean(encoder + i) = error.value;
+    variance(encoder + i) = error.std * error.std;
   }
   if (prior.places)
     x.mean.template segment<2 * S>(places) = *prior.places;

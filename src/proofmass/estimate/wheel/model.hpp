@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "proofmass/core/quantity.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/filter/smoother.hpp"
 
@@ -37,6 +38,9 @@
 // A sensor's filter delays the motion by τ. Rotating quantities (gravity and hub acceleration) are
 // delayed by atan(ω τ) instead of ω τ and attenuated by the cosine of that (one pole). Its
 // gyroscope, if any, measures (1 + s_g) ω + b_g about the axle, with the same delay.
+//
+// An encoder on the axle shows ψ with d ψ = θ + o + d Σ c_n cos nψ + s_n sin nψ, n = 1 (its disc
+// is off centre) and 2 (it is warped), d = ±1 its direction and o its offset; without delay.
 namespace proofmass::estimate {
 
 /// Indices of each quantity in the state; those of a sensor are relative to first_of(sensor).
@@ -60,10 +64,15 @@ inline constexpr int ripple_orders = 4;  ///< (c, s) for each
 [[nodiscard]] constexpr int gyro(int sensors) {
   return ripple(sensors) + 2 * ripple_orders;
 }
+/// Offset of the encoder, rad, then (c, s) of each order of its errors.
+inline constexpr int encoder_orders = 2, encoder_states = 1 + 2 * encoder_orders;
+[[nodiscard]] constexpr int encoder(int sensors) {
+  return gyro(sensors) + 2 * sensors;
+}
 /// The lever arms come last: once found they are held, and the filter runs on the states before
 /// them.
 [[nodiscard]] constexpr int places(int sensors) {
-  return gyro(sensors) + 2 * sensors;
+  return encoder(sensors) + encoder_states;
 }
 [[nodiscard]] constexpr int states(int sensors) {
   return places(sensors) + 2 * sensors;
@@ -109,6 +118,27 @@ struct PlanarReadings {
   }
 };
 
+/// (c, s) of each order of an encoder's errors, rad.
+using EncoderErrors = std::array<Uncertain, wheel::encoder_states - 1>;
+/// Of a disc off centre by about a twentieth of its radius.
+inline constexpr EncoderErrors uncalibrated_errors_rad{
+    Uncertain{0.0, 0.05}, {0.0, 0.05}, {0.0, 0.05}, {0.0, 0.05}};
+
+/// An encoder's angle at each epoch: the mean of its fixes since the epoch before.
+struct EncoderReadings {
+  std::vector<double> angle_rad;      ///< its own, unwrapped; NaN without a fix
+  std::vector<double> age_s;          ///< the epoch's time less the fixes'
+  std::vector<double> variance_rad2;  ///< of the fixes, from the counts' width
+  double more_variance_rad2 = 0.0;    ///< estimated: time stamps, errors of higher order
+  double direction = 1.0;             ///< d
+  double zero_rad = 0.0;              ///< current estimate of o; its state is the difference
+  double walk_psd = 0.0;              ///< random walk of o, rad²/s, for single missed counts
+  EncoderErrors errors_rad = uncalibrated_errors_rad;  ///< prior
+  double nonlinearity = 0.0;  ///< standard deviation of the accelerometers', at 1 g
+
+  [[nodiscard]] bool has(std::size_t k) const { return !std::isnan(angle_rad[k]); }
+};
+
 /// Result of an earlier pass, about which the measurements are linearised:
 ///
 /// - about its constants always;
@@ -149,7 +179,7 @@ struct WheelModel {
   static constexpr int sensors_used = Sensors;
   static constexpr int states = wheel::states(Sensors);
   static constexpr int moving = wheel::moving;
-  static constexpr int channels = 3 * Sensors + 1;
+  static constexpr int channels = 3 * Sensors + 2;
   using State = Mat<states>;
 
   double gravity_mps2 = 0.0;      ///< its component in the plane of the wheel
@@ -159,6 +189,7 @@ struct WheelModel {
   WheelNoise noise;
   const std::vector<WheelInstant>* instants = nullptr;
   std::array<const PlanarReadings*, 2> readings{};
+  const EncoderReadings* encoder = nullptr;
   const WheelPath* about = nullptr;  ///< nullptr: the plain extended filter
 
   /// Number of leading epochs at which the measurements are linearised about the path. Until
@@ -178,7 +209,8 @@ struct WheelModel {
   [[nodiscard]] std::size_t size() const { return instants->size(); }
   [[nodiscard]] int active() const {
     if (!places_held) return states;
-    if (with_gyro) return wheel::places(Sensors);
+    if (encoder != nullptr) return wheel::places(Sensors);
+    if (with_gyro) return wheel::encoder(Sensors);
     return with_ripple ? wheel::gyro(Sensors) : wheel::ripple(Sensors);
   }
 
@@ -263,6 +295,7 @@ struct WheelModel {
       for (int s = 0; s < Sensors; ++s)
         step.walk.template segment<2>(wheel::gyro(Sensors) + 2 * s) << gyro_bias_walk_psd * t,
             gyro_scale_walk_psd * t;
+    if (encoder != nullptr) step.walk(wheel::encoder(Sensors)) = encoder->walk_psd * t;
     return step;
   }
 
@@ -279,6 +312,11 @@ struct WheelModel {
         readings[sensor]->speed_radps[static_cast<std::size_t>((*instants)[k].row[sensor])]);
   }
 
+  /// Whether epoch k has an angle of the encoder.
+  [[nodiscard]] bool has_encoder(std::size_t k) const {
+    return encoder != nullptr && encoder->has(k);
+  }
+
   void measure(const State& x, std::size_t k, Readings<states, channels>& out) const {
     out.count = out.constraints = 0;
     const State at_state = about == nullptr ? x : state_about(x, k);
@@ -288,27 +326,28 @@ struct WheelModel {
       if (!has_readings(index, k)) continue;
       const PlanarReadings& sensor = *readings[index];
       const auto at = static_cast<std::size_t>((*instants)[k].row[index]);
-      const int first = out.count;
+      const auto first = static_cast<std::size_t>(out.count);
       const Mat<2> lever =
           levers == nullptr ? Mat<2>(now.speed * now.speed, now.accel) : (*levers)[k];
       read_sensor(at_state, now, lever, s, out);
-      auto& u = out.rows[static_cast<std::size_t>(first)];
-      auto& v = out.rows[static_cast<std::size_t>(first + 1)];
+      auto& u = out.rows[first];
+      auto& v = out.rows[first + 1];
       u.value = sensor.u_mps2[at];
       v.value = sensor.v_mps2[at];
       u.variance = v.variance = sensor.variance_m2ps4[at];
       if (has_speed(index, k)) {
         read_gyro(at_state, now, s, out);
-        auto& speed = out.rows[static_cast<std::size_t>(first + 2)];
+        auto& speed = out.rows[first + 2];
         speed.value = sensor.speed_radps[at];
         speed.variance = sensor.speed_variance;
       }
-      if (about == nullptr) continue;
-      for (int i = first; i < out.count; ++i) {
+    }
+    if (has_encoder(k)) read_encoder(at_state, k, out);
+    if (about != nullptr)
+      for (int i = 0; i < out.count; ++i) {
         auto& row = out.rows[static_cast<std::size_t>(i)];
         row.predicted += row.h.dot(x - at_state);
       }
-    }
     if ((*instants)[k].stands && (*instants)[k].dt_s > 0.0) read_standing(x, k, out);
   }
 
@@ -354,6 +393,26 @@ struct WheelModel {
     row.h(at) = 1.0;
     row.h(at + 1) = now.speed;
     row.predicted = (1.0 + x(at + 1)) * now.speed + x(at);
+  }
+
+  /// The errors are those at the measured angle, which makes them linear in the state.
+  void read_encoder(const State& x, std::size_t k, Readings<states, channels>& out) const {
+    constexpr int at = wheel::encoder(Sensors);
+    const double psi = encoder->angle_rad[k], age_s = encoder->age_s[k];
+    const Motion now = motion(x);
+    auto& row = out.rows[static_cast<std::size_t>(out.count++)];
+    row.h = now.by_angle - age_s * now.by_speed + 0.5 * age_s * age_s * now.by_accel;
+    row.predicted = now.angle - age_s * now.speed + 0.5 * age_s * age_s * now.accel + x(at);
+    row.h(at) = 1.0;
+    for (int n = 1; n <= wheel::encoder_orders; ++n) {
+      const double c = encoder->direction * std::cos(n * psi);
+      const double s = encoder->direction * std::sin(n * psi);
+      row.h(at + 2 * n - 1) = c;
+      row.h(at + 2 * n) = s;
+      row.predicted += c * x(at + 2 * n - 1) + s * x(at + 2 * n);
+    }
+    row.value = encoder->direction * psi - encoder->zero_rad;
+    row.variance = encoder->variance_rad2[k] + encoder->more_variance_rad2;
   }
 
   void read_sensor(const State& x,

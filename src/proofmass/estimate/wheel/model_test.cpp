@@ -110,6 +110,16 @@ TEST(WheelModel, JacobianWithRippleDelayAndGyroscopesEqualsDifferences) {
   expect_jacobian_of_differences(instant, 6);
 }
 
+TEST(WheelModel, JacobianWithAnEncoderEqualsDifferences) {
+  const EncoderReadings encoder{
+      .angle_rad = {3.3}, .age_s = {0.004}, .variance_rad2 = {1e-6}, .direction = -1.0};
+  OneInstant<1> instant(0.3, 0.0);
+  instant.model.with_ripple = true;
+  instant.model.delay_s = 0.01;
+  instant.model.encoder = &encoder;
+  expect_jacobian_of_differences(instant, 3);
+}
+
 // The rippling speed integrated numerically from the initial angle.
 TEST(WheelModel, SpeedAndAccelerationAreTheDerivativesOfTheRipplingAngle) {
   WheelModel<1> model;

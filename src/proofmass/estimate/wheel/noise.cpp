@@ -65,13 +65,15 @@ class VarianceProfile {
 };
 
 /// The channels of epoch k that belong to each sensor, in the order written by measure(): two for
-/// each sensor measured.
+/// each sensor measured, one for its gyroscope, one for the encoder, whose sums are those of the
+/// variance that its fixes do not explain.
 template <int S>
 void gather(const WheelReadings& readings,
             std::size_t k,
             const StepOf<WheelModel<S>>& step,
             std::array<NoiseStretch*, 2> stretches,
-            std::array<NoiseStretch, 2>& gyros) {
+            std::array<NoiseStretch, 2>& gyros,
+            NoiseStretch& encoder) {
   int channel = 0;
   for (std::size_t s = 0; s < readings.sensors.size() && channel < step.count; ++s) {
     const std::int64_t row = readings.instants[k].row[s];
@@ -94,6 +96,12 @@ void gather(const WheelReadings& readings,
     gyros[s].explained += u.expected - readings.sensors[s].speed_variance;
     gyros[s].readings += 1.0;
   }
+  if (!readings.encoder || !readings.encoder->has(k)) return;
+  const auto& u = step.updates[static_cast<std::size_t>(channel)];
+  if (!u.used) return;
+  encoder.innovation2 += std::min(u.nis(), 4.0 * wheel_gate.huber) * u.expected;
+  encoder.explained += u.expected - readings.encoder->more_variance_rad2;
+  encoder.readings += 1.0;
 }
 
 /// Variance of white noise in the measurements from their third differences, to which a slowly
@@ -211,11 +219,15 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
     if (s == 0) readings.shakes = shakes;
   }
   std::array<NoiseStretch, 2> gyros;
+  NoiseStretch encoder;
   auto state = prior_state<S>(prior);
   filter(model, 0, model.size(), wheel_gate, state, [&](std::size_t k, const auto& step) {
     const auto i = static_cast<std::size_t>((readings.time_s[k] - start_s) / length_s);
-    gather<S>(readings, k, step, {&stretches[0][i], &stretches[1][i]}, gyros);
+    gather<S>(readings, k, step, {&stretches[0][i], &stretches[1][i]}, gyros, encoder);
   });
+  if (encoder.readings > fewest_readings)
+    readings.encoder->more_variance_rad2 =
+        std::max(0.0, (encoder.innovation2 - encoder.explained) / encoder.readings);
   for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
     if (gyros[s].readings > 20.0) readings.sensors[s].speed_variance = gyros[s].variance();
     const VarianceProfile profile(stretches[s], length_s);

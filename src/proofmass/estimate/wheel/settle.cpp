@@ -13,12 +13,13 @@ namespace {
 constexpr double ripple_share = 0.02;
 
 /// Prior of the constants, depending on how far the wheel turns.
-ConstantsPrior prior_for(const WheelPath& path) {
+ConstantsPrior prior_for(const WheelPath& path, const WheelReadings& readings) {
   const auto angle = [](const Mat<wheel::moving>& at) { return at(wheel::angle); };
   const auto [lowest, highest] = std::ranges::minmax_element(path.moving, {}, angle);
-  if (angle(*highest) - angle(*lowest) < rad_per_turn) return short_way_prior;
-  ConstantsPrior prior;
-  prior.ripple = ripple_share;
+  const bool short_way = angle(*highest) - angle(*lowest) < rad_per_turn;
+  ConstantsPrior prior = short_way ? short_way_prior : ConstantsPrior{};
+  if (!short_way) prior.ripple = ripple_share;
+  if (readings.encoder) prior.encoder_errors_rad = readings.encoder->errors_rad;
   return prior;
 }
 
@@ -61,7 +62,7 @@ Settled<S> settle(WheelReadings& readings,
                   double tuning_factor) {
   auto model = held_model<S>(readings, track.noise, track.path);
   const Places places = track.path.standing.tail<2 * S>();
-  WheelPrior prior{track.beginning, prior_for(track.path), places};
+  WheelPrior prior{track.beginning, prior_for(track.path, readings), places};
   settle_variance(model, prior, readings);
   // Before the ripple is fitted it raises the residuals as vibration does, and with a vehicle's
   // rolling radius in the model it could not be fitted.

@@ -2,6 +2,7 @@
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/wheel/encoder.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
 
 namespace proofmass::estimate {
@@ -103,14 +104,18 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
   WheelReadings out{readings.gravity_mps2,
                     readings.gravity_std_mps2,
                     readings.given_rolling_radius_m,
+                    readings.found_rolling_radius_m,
                     readings.rolling_radius_m,
                     readings.delay_s,
                     readings.phase_rad,
                     readings.orders,
+                    readings.one_speed,
                     readings.shakes,
                     {},
                     {},
+                    {},
                     {}};
+  if (readings.encoder) out.encoder = averaged(*readings.encoder, readings.time_s, each);
   out.sensors.resize(readings.sensors.size());
   for (std::size_t first = 0; first < readings.instants.size(); first += each) {
     const std::size_t last = std::min(first + each, readings.instants.size());

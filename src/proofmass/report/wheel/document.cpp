@@ -56,6 +56,11 @@ std::string delay_words(const WheelReport& report) {
   if (report.options.bandwidth_hz)
     return fmt::format("The delay of the sensor's filter ({} Hz), {}, is corrected.",
                        significant(*report.options.bandwidth_hz, 3), delay);
+  if (report.solution.encoder)
+    return fmt::format(
+        "The bandwidth of the sensor's filter is unknown: its delay was estimated by the encoder, "
+        "as far as the speed changes, as {}.",
+        delay);
   return fmt::format(
       "The bandwidth of the sensor's filter is unknown: its delay was assumed to be {}. The "
       "bandwidth, from the datasheet or the filter's capacitor, determines it.",
@@ -143,6 +148,44 @@ Field gyroscope(const WheelSolution& solution) {
                                 .why_null = "no gyroscope was used"});
 }
 
+Fields slip_fields(const signal::CountSlip& slip) {
+  return {
+      field::number("time_s", slip.time_s),
+      field::interval("interval_95_s", std::array{slip.start_s, slip.end_s}),
+      field::integer("counts", slip.counts,
+                     {.meaning = "change of the count; negative if counts were missed forwards"})};
+}
+
+Field encoder(const WheelSolution& solution) {
+  std::optional<Fields> fields;
+  if (solution.encoder) {
+    const estimate::WheelEncoderFit& fit = *solution.encoder;
+    const auto error = [&](const char* key, std::size_t at, const char* label) {
+      return field::measured(key, fit.errors_rad[at], "rad", {.label = label, .display = degrees});
+    };
+    fields = Fields{
+        field::text("channel", fit.name, {.label = "Channel"}),
+        field::flag("reversed", fit.direction < 0.0,
+                    {.meaning = "its angle falls where the wheel's rises", .label = "Reversed"}),
+        field::measured("offset_rad", fit.offset_rad, "rad",
+                        {.meaning = "its angle, in the wheel's direction, less the wheel's",
+                         .label = "Offset",
+                         .display = degrees}),
+        error("once_cos_rad", 0, "Error once a turn, cosine"),
+        error("once_sin_rad", 1, "Error once a turn, sine"),
+        error("twice_cos_rad", 2, "Error twice a turn, cosine"),
+        error("twice_sin_rad", 3, "Error twice a turn, sine"),
+        field::records("missed_counts", fit.missed, slip_fields),
+        field::magnitude("noise_rad", fit.noise_rad,
+                         {.meaning = "standard deviation of one angle at a sample",
+                          .label = "Noise of an angle",
+                          .display = degrees})};
+  }
+  return field::object_or_null("encoder", std::move(fields),
+                               {.meaning = "shown angle less true angle, over the shown angle",
+                                .why_null = "no encoder was used"});
+}
+
 Fields candidate_fields(const estimate::TurnsCandidate& candidate) {
   return {field::number("value", candidate.turns.value), field::number("std", candidate.turns.std),
           field::probability("probability", candidate.probability)};
@@ -205,6 +248,7 @@ Fields wheel_fields(const WheelReport& report) {
                       {.meaning = "of the sensors' filters, given or assumed"}),
       sensors(report),
       gyroscope(solution),
+      encoder(solution),
       field::count("rejected_samples", solution.rejected_samples, {.label = "Rows rejected"}),
       field::records("rejected", solution.rejected, stretch_fields),
       methods(solution),
@@ -242,6 +286,8 @@ Section sensors_section(const WheelReport& report, const Fields& fields) {
       .on_terminal = true};
   if (const auto& gyro = entry("gyroscope").fields)
     section.tables.push_back(fields_table("Gyroscope about the axle", *gyro));
+  if (const auto& encoder = entry("encoder").fields)
+    section.tables.push_back(fields_table("Encoder on the axle", *encoder));
   return section;
 }
 

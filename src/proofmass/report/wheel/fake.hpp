@@ -58,6 +58,14 @@ inline WheelReport fake_report() {
   solution.angle_final_rad = Uncertain{angle, 2e-4};
   solution.peak_speed_radps = Uncertain{-147.0 * radps_per_rpm, 0.05};
   solution.sensors = {fake_sensor("wheel <1>.csv")};
+  solution.encoder = estimate::WheelEncoderFit{
+      .name = "counts",
+      .direction = -1.0,
+      .offset_rad = Uncertain{0.4312, 0.0004},
+      .errors_rad = {Uncertain{0.0041, 0.0002}, Uncertain{-0.0013, 0.0002}, std::nullopt,
+                     std::nullopt},
+      .noise_rad = 0.0004,
+      .missed = {{61.2, 61.1, 61.4, -3}}};
   solution.smoother.turns = solution.turns;
   solution.ekf.turns = Uncertain{-79.6139, 0.004};
   solution.atan2 = {Uncertain{-79.612, 0.0}, "takes the hub's shaking for gravity"};
