@@ -114,16 +114,7 @@ def calibrate(
     encoder : bool
         Calibrate the encoder of a wheel by the accelerometers on it, instead of an accelerometer by
         positions.
-    encoder_channel : str, optional
-        The encoder's counts or angle (default: the channel encoder, counts, ticks or angle).
-    counts_per_turn : float, optional
-        Quadrature counts of one turn of the encoder.
-    wrap : float, optional
-        Number of counts at which the counter wraps, such as 65536 (default: none, or one turn).
-    index : str, optional
-        Channel of the index pulse, where the angle is 0.
-    edges : path, optional
-        File of the encoder's edges: time and count after each, on the clock of x.
+    {encoder_channel to edges}
     nonlinearity : float, optional
         Standard deviation of the accelerometers' nonlinearity at 1 g in per cent, with encoder
         (default 0.02).

@@ -33,6 +33,16 @@ sensor : Sensor, path or list of them, optional
     Apply this sensor file's calibration first; once for all sensors or once for each.
 supply : float, optional
     Supply voltage in V of a ratiometric sensor, instead of the sensor file's (needs sensor).""",
+    "encoder_channel to edges": """encoder_channel : str, optional
+    The encoder's counts or angle (default: the channel encoder, counts, ticks or angle).
+counts_per_turn : float, optional
+    Quadrature counts of one turn of the encoder.
+wrap : float, optional
+    Number of counts at which the counter wraps, such as 65536 (default: none, or one turn).
+index : str, optional
+    Channel of the index pulse, where the angle is 0.
+edges : path, optional
+    File of the encoder's edges: time and count after each, on the clock of x.""",
     "gravity, latitude, height": """gravity : float, optional
     Local gravity in m/s² (default 9.80665; not with latitude).
 latitude : float, optional

@@ -78,16 +78,7 @@ def wheel(
         Radius of the rim, whose path length is the distance.
     encoder : bool
         Use the encoder on the axle, recorded in the first file, as a further measurement.
-    encoder_channel : str, optional
-        The encoder's counts or angle (default: the channel encoder, counts, ticks or angle).
-    counts_per_turn : float, optional
-        Quadrature counts of one turn of the encoder.
-    wrap : float, optional
-        Number of counts at which the counter wraps, such as 65536 (default: none, or one turn).
-    index : str, optional
-        Channel of the index pulse, where the angle is 0.
-    edges : path, optional
-        File of the encoder's edges: time and count after each, on the clock of x.
+    {encoder_channel to edges}
     since_switch_on : float, optional
         Time between power-on and the file's first sample: corrects the warm-up of the sensor files.
     {channel to supply}
