@@ -144,6 +144,8 @@ WheelInput wheel_input(const std::vector<std::string>& files,
       input.encoder = wheel_encoder(recording, encoder, flags, begin_s, sensor_model_of(models, 0),
                                     input.notes);
   }
+  if (encoder.wanted && !input.encoder)
+    throw Failure(usage, files.front() + ": --encoder: no accelerometer beside the encoder");
   if (!models.empty()) {
     input.alignment_std_rad = sensor::alignment_std_rad(models.front()).value_or(0.0);
     if (const auto& bandwidth = models.front().electrical.bandwidth[0])

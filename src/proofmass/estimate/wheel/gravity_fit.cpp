@@ -56,21 +56,18 @@ std::vector<EncoderMotion> motion_of(const signal::AngleFixes& fixes,
   for (double& t : time_s) t -= age_s;
   const signal::AngleMotion motion = signal::motion_at(fixes, time_s);
   std::vector<EncoderMotion> out;
-  const auto size = static_cast<std::ptrdiff_t>(time_s.size());
   const auto known = [](double angle) { return !std::isnan(angle); };
   const auto first = std::ranges::find_if(motion.angle_rad, known);
   double latest = first == motion.angle_rad.end() ? 0.0 : *first;
   out.reserve(time_s.size());
-  for (std::ptrdiff_t k = 0; k < size; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const double angle = motion.angle_rad[at];
+  for (std::size_t k = 0; k < time_s.size(); ++k) {
+    const double angle = motion.angle_rad[k];
     if (!known(angle)) {
       out.emplace_back(latest, 0.0, 0.0, 0.0);
       continue;
     }
     latest = angle;
-    out.emplace_back(angle, motion.speed_radps[at], motion.accel_radps2[at],
-                     motion.speed_radps[at]);
+    out.emplace_back(angle, motion.speed_radps[k], motion.accel_radps2[k], motion.speed_radps[k]);
   }
   calm(time_s, out);
   return out;

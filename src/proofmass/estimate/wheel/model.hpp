@@ -120,7 +120,7 @@ struct PlanarReadings {
 
 /// (c, s) of each order of an encoder's errors, rad.
 using EncoderErrors = std::array<Uncertain, wheel::encoder_states - 1>;
-/// Of a disc off centre by about a twentieth of its radius.
+/// Without a calibration: the disc may be off centre by a twentieth of its radius.
 inline constexpr EncoderErrors uncalibrated_errors_rad{
     Uncertain{0.0, 0.05}, {0.0, 0.05}, {0.0, 0.05}, {0.0, 0.05}};
 

@@ -244,8 +244,9 @@ Fields wheel_fields(const WheelReport& report) {
       field::number("gravity_mps2", report.options.gravity_mps2, {.meaning = "as assumed"}),
       field::flag("clocks_shared", report.options.clocks_shared,
                   {.meaning = "the sensors were sampled by one clock"}),
-      field::measured("delay_s", solution.delay_s, "s",
-                      {.meaning = "of the sensors' filters, given or assumed"}),
+      field::measured(
+          "delay_s", solution.delay_s, "s",
+          {.meaning = "of the sensors' filters, given, assumed or shown by an encoder"}),
       sensors(report),
       gyroscope(solution),
       encoder(solution),
