@@ -90,6 +90,8 @@ class Encoder(CommandTest):
     def test_says_what_it_needs(self):
         self.write("wheel.csv", wheel(20))
         self.assertIn("--counts-per-turn", self.expect_failure(USAGE, "calibrate", "wheel.csv", "--encoder"))
+        for verb in ("calibrate", "wheel"):
+            self.assertIn("--encoder", self.expect_failure(USAGE, verb, "wheel.csv", "--counts-per-turn", COUNTS))
         self.expect_failure(USAGE, "calibrate", "wheel.csv", "--encoder", "--counts-per-turn", COUNTS,
                             "--encoder-channel", "absent")
         self.expect_failure(USAGE, "calibrate", "wheel.csv", "--encoder", "--counts-per-turn", COUNTS, "--means")

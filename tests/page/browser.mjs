@@ -41,6 +41,7 @@ export async function stop() {
 
 export const base = () => link.split("/?")[0];
 export const token = () => new URL(link).searchParams.get("token");
+export const serverPid = () => server.pid;
 export const newContext = () => browser.newContext();
 
 export async function open(query = "", { width = 1280, height = 900, scheme = "light" } = {}) {
@@ -49,7 +50,7 @@ export async function open(query = "", { width = 1280, height = 900, scheme = "l
   page.setDefaultTimeout(patience);
   const problems = [];
   page.on("pageerror", (error) => problems.push(String(error)));
-  page.on("console", (said) => said.type() === "error" && !/403/.test(said.text()) && problems.push(said.text()));
+  page.on("console", (said) => said.type() === "error" && !/40[03]/.test(said.text()) && problems.push(said.text()));
   page.on("request", (request) => !request.url().startsWith(base()) && !/^(blob|data):/.test(request.url()) && problems.push(`asks ${request.url()}`));
   await page.goto(link);
   await page.waitForSelector("nav a", { state: "attached" });

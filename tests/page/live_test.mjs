@@ -1,5 +1,6 @@
 // Live sources and guided calibration on the page, with the digital twin as the device.
 import { spawnSync } from "node:child_process";
+import { createSocket } from "node:dgram";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -158,6 +159,27 @@ test("noise and spectrum grow while a source is watched", async () => {
   await close();
 });
 
+test("estimates are sent to a controller on this machine", async () => {
+  const controller = createSocket("udp4");
+  await new Promise((done) => controller.bind(0, "127.0.0.1", done));
+  const heard = new Promise((found) => controller.once("message", (datagram) => found(JSON.parse(String(datagram)))));
+  const { page, close } = await open("v=live");
+  await page.waitForSelector("#live-source");
+  await page.fill("#live-source", "sim:wheel?rate=200");
+  assert.equal(await page.isVisible("#live-send-to"), false);
+  await page.selectOption("#live-what", "wheel");
+  await page.fill("#live-send-to", "udp:10.1.2.3:9000");
+  await page.click("button:has-text('Watch only')");
+  await page.waitForSelector(".failure >> text=/this machine|127.0.0.1/");
+  await page.fill("#live-send-to", `udp:127.0.0.1:${controller.address().port}`);
+  await page.click("button:has-text('Watch only')");
+  const first = await heard;
+  assert.ok(Number.isFinite(first.angle) && first.angle_std > 0, JSON.stringify(first));
+  controller.close();
+  await end(Number((await address(page)).searchParams.get("source")));
+  await close();
+});
+
 test("a guided calibration ends with a certificate and a sensor file", async () => {
   const { page, close } = await open("v=calibration");
   await page.waitForSelector("#live-source");
@@ -168,7 +190,10 @@ test("a guided calibration ends with a certificate and a sensor file", async () 
   await page.waitForSelector(".sphere .next");
   await page.waitForSelector(".sphere .done");
   await page.waitForSelector(".residuals .residual");
-  await shot(page, "calibration-light");
+  await page.waitForSelector(".sphere .shade");
+  await page.waitForSelector('svg[aria-label="The sensor wanted"] .face');
+  assert.match(await page.locator("table.figures").innerText(), /x.*±.*±.*yz.*±/);
+  await shot(page, "guided-light");
   await page.waitForSelector("section[aria-label=Result] >> text=Calibrated");
   assert.match(readFileSync(join(folder, "cal.toml"), "utf8"), /\[calibration/);
   assert.match(readFileSync(join(folder, "cal.html"), "utf8"), /<!doctype html>/i);

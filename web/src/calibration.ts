@@ -1,13 +1,14 @@
 // Guided calibration: where to lay the sensor next, what is done, and how good it is so far.
 import { blob, pause, post, remove } from "./api";
 import { link, note, params } from "./address";
-import { h, light, replace, save } from "./dom";
-import { fixed, significant } from "./format";
-import { Feed, listSources, type Guide, type Source } from "./live_api";
+import { h, light, replace, save, svg } from "./dom";
+import { fixed, plain, significant } from "./format";
+import { Feed, listSources, type Figures, type Guide, type Source } from "./live_api";
 import { startForm } from "./live_start";
 import { draw as drawPlot, type Drawn } from "./plot";
 import { progress } from "./recording";
-import { hemisphere, residualBar } from "./sphere";
+import { orientation } from "./orientation";
+import { hemisphere, residualBar, shadeLevels, shading } from "./sphere";
 import type { View } from "./view";
 
 const milli = 1000;
@@ -50,13 +51,48 @@ function accuracy(guide: Guide): { element: HTMLElement; plot: Drawn | undefined
         )
       : undefined;
   const now = guide.error_g === null ? h("div", { class: "big" }, "–") : h("div", { class: "big" }, significant(milli * guide.error_g, 2), h("small", {}, ` mg, target ${significant(target, 2)} mg`));
+  const worst = guide.maps && h("p", {}, `${significant(milli * guide.maps.largest_g, 2)} mg `, h("span", { class: "soft" }, "in the least certain direction"));
+  const gain = guide.next_gain !== null && h("p", {}, `${fixed(-100 * guide.next_gain, 0)} % `, h("span", { class: "soft" }, `by position ${guide.poses.length + 1}`));
   const element = h(
     "section",
     { class: "panel", "aria-label": "Accuracy so far" },
     h("div", { class: "ph" }, h("h2", {}, "Accuracy so far"), h("span", { class: "soft" }, "standard deviation of a calibrated measurement at 1 g")),
-    h("div", { class: "pb" }, now, guide.error_g === null && h("p", { class: "soft" }, "Nine positions determine bias, scale and angles."), plot?.element),
+    h("div", { class: "pb" }, now, worst, gain, guide.error_g === null && h("p", { class: "soft" }, "Nine positions determine bias, scale and angles."), plot?.element),
   );
   return { element, plot };
+}
+
+function figures(of: Figures, unit: string): HTMLElement {
+  // As many decimals as two digits of the standard deviation have.
+  const shown = (value: number | undefined, std: number | undefined): string => {
+    if (value === undefined || std === undefined || !(std > 0)) return "–";
+    const decimals = Math.max(0, 1 - Math.floor(Math.log10(std)));
+    return `${fixed(value, decimals)} ± ${fixed(std, decimals)}`;
+  };
+  const row = (k: number, axis: string, angle: string): HTMLElement =>
+    h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, axis),
+      h("td", { class: "num" }, shown(milli * (of.bias_g[k] ?? NaN), milli * (of.bias_std_g[k] ?? NaN))),
+      h("td", { class: "num" }, shown(of.scale[k], of.scale_std[k])),
+      h("td", { class: "num" }, h("span", { class: "soft" }, `${angle} `), shown(milli * (of.angles_rad[k] ?? NaN), milli * (of.angles_std_rad[k] ?? NaN))),
+    );
+  return h(
+    "section",
+    { class: "panel", "aria-label": "Figures so far" },
+    h("div", { class: "ph" }, h("h2", {}, "Figures so far"), h("span", { class: "soft" }, "± 1 standard deviation; certificate and sensor file at the end")),
+    h(
+      "div",
+      { class: "pb" },
+      h(
+        "table",
+        { class: "figures" },
+        h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Axis"), h("th", { scope: "col", class: "num" }, "Bias (mg)"), h("th", { scope: "col", class: "num" }, `Output at 1 g, less the bias${unit === "" ? "" : ` (${unit})`}`), h("th", { scope: "col", class: "num" }, "Misalignment (mrad)"))),
+        h("tbody", {}, row(0, "x", "yz"), row(1, "y", "zy"), row(2, "z", "zx")),
+      ),
+    ),
+  );
 }
 
 export function calibrationView(main: HTMLElement): View {
@@ -66,9 +102,11 @@ export function calibrationView(main: HTMLElement): View {
   let guide: Guide | undefined;
   let plot: Drawn | undefined;
   let slowly = "";
+  let shades: SVGElement[] = [];
 
   const facts = h("span", { class: "soft facts" });
   const leaveOut = h("button", { type: "button", class: "btn", onclick: () => void answer("skip") }, "Leave it out ", h("kbd", { class: "keys" }, "n"));
+  const repeat = h("button", { type: "button", class: "btn", hidden: true, onclick: () => void answer("repeat") }, "Repeat what contradicts ", h("kbd", { class: "keys" }, "p"));
   const finish = h("button", { type: "button", class: "btn", onclick: () => void answer("quit") }, "End and calibrate ", h("kbd", { class: "keys" }, "e"));
   const said = h("div", { role: "alert" });
   const instruction = h("div", { class: "say", role: "status" });
@@ -76,18 +114,21 @@ export function calibrationView(main: HTMLElement): View {
   const state = h("p", {});
   const spheres = h("div", { class: "spheres" });
   const right = h("div", {});
+  const figuresPlace = h("div", {});
   const result = h("div", {});
   const form = h("div", {});
   const legend = h("p", { class: "soft" }, "○ done   ■ contradicts the others   ◎ next best   + the 26 that are offered");
-  const steps = h("section", { class: "panel", "aria-label": "Instruction" }, h("div", { class: "pb" }, instruction, held, state));
+  const shadeLegend = h("span", { class: "soft shades" });
+  const drawings = h("div", { class: "orientations" });
+  const steps = h("section", { class: "panel", "aria-label": "Instruction" }, h("div", { class: "pb instruction" }, h("div", {}, instruction, held, state), drawings));
   const grid = h(
     "div",
     { class: "calibration", hidden: true },
-    h("div", {}, result, steps, h("section", { class: "panel", "aria-label": "Directions" }, h("div", { class: "ph" }, h("h2", {}, "Directions"), h("span", { class: "soft" }, "which way up is in the sensor's axes; equal areas")), h("div", { class: "pb" }, spheres, legend))),
+    h("div", {}, result, steps, h("section", { class: "panel", "aria-label": "Directions" }, h("div", { class: "ph" }, h("h2", {}, "Directions"), h("span", { class: "soft" }, "which way up is in the sensor's axes; equal areas"), shadeLegend), h("div", { class: "pb" }, spheres, legend)), figuresPlace),
     right,
   );
   const again = h("button", { type: "button", class: "btn", onclick: () => openForm() }, "New calibration…");
-  replace(main, h("div", { class: "head" }, h("h1", {}, "Calibration"), facts, h("div", { class: "acts" }, leaveOut, finish, again)), said, form, grid);
+  replace(main, h("div", { class: "head" }, h("h1", {}, "Calibration"), facts, h("div", { class: "acts" }, leaveOut, repeat, finish, again)), said, form, grid);
 
   function fail(problem: unknown): void {
     replace(said, h("p", { class: "failure" }, problem instanceof Error ? problem.message : String(problem)));
@@ -121,11 +162,20 @@ export function calibrationView(main: HTMLElement): View {
     if (instruction.textContent !== words) instruction.textContent = words;
     replace(held, now.hold_fraction !== null && progress(now.hold_fraction));
     replace(state, light(now.phase === "resting" ? "good" : now.phase === "stuck" ? "bad" : "none", now.live), now.said && h("span", { class: "soft" }, `  ${now.said}`));
-    replace(spheres, h("figure", {}, h("figcaption", {}, "+z up half"), hemisphere(now, false)), h("figure", {}, h("figcaption", {}, "−z up half"), hemisphere(now, true)));
+    replace(drawings, orientation(now.now, "now", false), !now.is_done && orientation(now.next, "wanted", true));
+    repeat.hidden = !now.can_repeat || steps.hidden;
     // What only a new position changes.
     const text = JSON.stringify([now.poses, now.errors_g]);
-    if (text === slowly) return;
+    const isNew = text !== slowly;
     slowly = text;
+    if (isNew) {
+      shades = now.maps ? [shading(now.maps, false), shading(now.maps, true)] : [];
+      const levels = now.maps ? shadeLevels(now.maps) : [];
+      replace(shadeLegend, ...(now.maps ? [`std ${significant(milli * (levels[0] ?? 0), 2)} `, svg("svg", { viewBox: "0 0 80 12", class: "swatches", "aria-hidden": "true" }, ...levels.map((_, k) => svg("g", {}, ...levels.slice(0, k).map(() => svg("rect", { x: 16 * k, y: 0, width: 14, height: 12, class: "shade" })), svg("rect", { x: 16 * k + 0.5, y: 0.5, width: 13, height: 11, class: "edge" })))), ` ${significant(milli * now.maps.largest_g, 2)} mg`] : []));
+    }
+    replace(spheres, h("figure", {}, h("figcaption", {}, "+z up half"), hemisphere(now, false, shades[0])), h("figure", {}, h("figcaption", {}, "−z up half"), hemisphere(now, true, shades[1])));
+    if (!isNew) return;
+    replace(figuresPlace, now.figures && figures(now.figures, plain(source?.last_head?.channels[0]?.unit ?? "")));
     plot?.dispose();
     const drawn = accuracy(now);
     plot = drawn.plot;
@@ -136,6 +186,7 @@ export function calibrationView(main: HTMLElement): View {
     const isOver = one.state === "ended" || one.state === "failed";
     steps.hidden = !guide || isOver;
     leaveOut.hidden = finish.hidden = isOver;
+    repeat.hidden = isOver || !guide?.can_repeat;
     again.hidden = !isOver;
     if (!isOver) return replace(result, one.state === "ending" || guide?.is_done ? h("p", { class: "soft" }, "being calibrated…") : false);
     const download = (name: string | null, word: string): HTMLElement | false => name !== null && h("button", { type: "button", class: "btn", onclick: () => void blob(`/api/files/${encodeURIComponent(name)}`).then((made) => save(name, made), fail) }, `${word} `, h("span", { class: "soft" }, name));
@@ -181,6 +232,7 @@ export function calibrationView(main: HTMLElement): View {
     },
     key: (key) => {
       if (key === "n") void answer("skip");
+      else if (key === "p" && !repeat.hidden) void answer("repeat");
       else if (key === "e") void answer("quit");
       else return false;
       return true;

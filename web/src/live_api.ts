@@ -57,6 +57,20 @@ export interface Pose {
   residual_std_g: number | null;
   is_suspect: boolean;
 }
+/// Standard deviation of |f| at 1 g on equal-area maps about +z and −z, as docs/serve.md describes.
+export interface Maps {
+  plus_z_g: number[][];
+  minus_z_g: number[][];
+  largest_g: number;
+}
+export interface Figures {
+  bias_g: number[];
+  bias_std_g: number[];
+  scale: number[];
+  scale_std: number[];
+  angles_rad: number[];
+  angles_std_rad: number[];
+}
 export interface Guide {
   procedure: string;
   prompt: string;
@@ -69,6 +83,10 @@ export interface Guide {
   error_g: number | null;
   target_g: number;
   errors_g: (number | null)[];
+  next_gain: number | null;
+  figures: Figures | null;
+  maps: Maps | null;
+  can_repeat: boolean;
   poses: Pose[];
   is_done: boolean;
 }

@@ -26,12 +26,17 @@ export function startForm(options: StartOptions): HTMLElement {
     : choice("live-what", [["", "nothing"], ["wheel", "wheel: angle and speed"], ["tilt", "tilt: roll and pitch"], ["track", "track: displacement"]]);
   const unit = choice("live-unit", [["", "as the source states"], ["g", "g"], ["mg", "mg"], ["m/s2", "m/s²"], ["V", "V"], ["mV", "mV"], ["counts", "counts"]]);
   const target = h("input", { id: "live-target", value: "1", inputmode: "decimal" });
+  const sendTo = h("input", { id: "live-send-to", placeholder: "udp:127.0.0.1:5005", spellcheck: "false", autocomplete: "off" });
+  const sendField = field("Send to", sendTo, "each estimate as a datagram of JSON, for a controller on this machine");
+  what.addEventListener("change", () => (sendField.hidden = what.value === ""));
+  sendField.hidden = true;
   const file = h("input", { id: "live-file", placeholder: "named by source and time", spellcheck: "false", autocomplete: "off" });
   const said = h("div", { role: "status" });
   const begin = async (recorded: boolean): Promise<void> => {
     const words: { [name: string]: string } = {};
     if (what.value !== "") words[options.procedure ? "procedure" : "estimate"] = what.value;
     if (unit.value !== "") words["unit"] = unit.value;
+    if (!options.procedure && what.value !== "" && sendTo.value.trim() !== "") words["send-to"] = sendTo.value.trim();
     if (options.procedure && target.value !== "") words["target-std"] = target.value;
     try {
       const made = await post<{ id: number }>("/api/live", { source: source.value.trim(), file: recorded ? file.value.trim() : null, options: words });
@@ -66,6 +71,7 @@ export function startForm(options: StartOptions): HTMLElement {
       list,
       field("Source", source),
       field(options.procedure ? "Procedure" : "Estimate", what),
+      !options.procedure && sendField,
       field("Unit", unit),
       options.procedure && field("Target (mg)", target, "standard deviation of a calibrated measurement at 1 g"),
       field("File", file),

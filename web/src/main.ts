@@ -69,7 +69,7 @@ const keys: [string, string][] = [
   ["← → Home End", "readout of the plot in focus"],
   ["space, w", "live: hold the picture, window"],
   ["a, r", "live: add a source, record"],
-  ["n, e", "calibration: leave a position out, end"],
+  ["n, p, e", "calibration: leave a position out, repeat one that contradicts, end"],
   ["Esc", "cancel, close"],
 ];
 const help = h("dialog", { "aria-label": "Keys" }, h("h2", {}, "Keys"), h("table", {}, h("tbody", {}, ...keys.map(([key, what]) => h("tr", {}, h("th", { scope: "row" }, key), h("td", {}, what))))), h("form", { method: "dialog" }, h("button", { class: "btn" }, "Close")));

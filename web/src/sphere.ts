@@ -1,7 +1,7 @@
 // Directions of a guided calibration: two Lambert (equal-area) hemispheres of which way is up in the
 // sensor's axes.
 import { svg } from "./dom";
-import type { Guide } from "./live_api";
+import type { Guide, Maps } from "./live_api";
 
 type Direction = [number, number, number];
 
@@ -69,11 +69,51 @@ function next(guide: Guide, isLower: boolean): SVGElement[] {
   ];
 }
 
-export function hemisphere(guide: Guide, isLower: boolean): SVGElement {
+/// Limits of the shades, from the smallest standard deviation to the largest, in g.
+export function shadeLevels(maps: Maps): number[] {
+  const least = Math.min(...maps.plus_z_g.flat(), ...maps.minus_z_g.flat());
+  const bands = 5;
+  return Array.from({ length: bands }, (_, k) => least + (k / bands) * (maps.largest_g - least));
+}
+
+/// Standard deviation of a measurement of 1 g, in bands, a line of the picture at a time.
+export function shading(maps: Maps, isLower: boolean): SVGElement {
+  const rows = isLower ? maps.minus_z_g : maps.plus_z_g;
+  const last = rows.length - 1;
+  const value = (x: number, y: number): number => {
+    const [u, v] = [((x / radius + 1) / 2) * last, ((y / radius + 1) / 2) * last];
+    const [k, i] = [Math.min(last - 1, Math.floor(u)), Math.min(last - 1, Math.floor(v))];
+    const at = (row: number, column: number): number => rows[row]?.[column] ?? 0;
+    const [a, b] = [u - k, v - i];
+    return (1 - b) * ((1 - a) * at(i, k) + a * at(i, k + 1)) + b * ((1 - a) * at(i + 1, k) + a * at(i + 1, k + 1));
+  };
+  const step = 2;
+  const paths = shadeLevels(maps).slice(1).map((level) => {
+    let d = "";
+    for (let y = -radius; y < radius; y += step) {
+      const edge = Math.sqrt(Math.max(0, radius * radius - (y + step / 2) ** 2));
+      let from: number | undefined;
+      for (let x = -edge; ; x = Math.min(edge, x + step)) {
+        const isOver = x < edge && value(x + step / 2, y + step / 2) >= level;
+        if (isOver) from ??= x;
+        if (!isOver && from !== undefined) {
+          d += `M${(middle + from).toFixed(1)} ${middle - y - step}H${(middle + x).toFixed(1)}v${step}H${(middle + from).toFixed(1)}z`;
+          from = undefined;
+        }
+        if (x >= edge) break;
+      }
+    }
+    return svg("path", { d, class: "shade" });
+  });
+  return svg("g", {}, ...paths);
+}
+
+export function hemisphere(guide: Guide, isLower: boolean, shade: SVGElement | undefined): SVGElement {
   const rings = [30, 60].map((deg) => svg("circle", { cx: middle, cy: middle, r: radius * Math.SQRT2 * Math.sin((deg * Math.PI) / 360), class: "ring" }));
   return svg(
     "svg",
     { viewBox: "-18 -2 336 306", class: "sphere", role: "img", "aria-label": `Directions with ${isLower ? "−z" : "+z"} up: ${guide.poses.length} positions taken` },
+    ...(shade ? [shade] : []),
     ...rings,
     svg("circle", { cx: middle, cy: middle, r: radius, class: "edge" }),
     svg("path", { d: `M${middle - radius} ${middle}H${middle + radius}M${middle} ${middle - radius}V${middle + radius}`, class: "ring" }),

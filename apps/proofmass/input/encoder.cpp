@@ -132,26 +132,31 @@ Recording edges_recording(const Recording& recording,
 }  // namespace
 
 void add_encoder_flags(CLI::App& verb, EncoderFlags& flags, const char* wanted) {
-  verb.add_flag("--encoder", flags.wanted, wanted);
+  CLI::Option* encoder = verb.add_flag("--encoder", flags.wanted, wanted);
   verb.add_option("--encoder-channel", flags.channel,
                   "the encoder's counts or angle (default: the channel encoder, counts, ticks or "
                   "angle)")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->needs(encoder);
   verb.add_option("--counts-per-turn", flags.counts_per_turn,
                   "quadrature counts of one turn of the encoder")
       ->type_name("N")
+      ->needs(encoder)
       ->check(positive());
   verb.add_option(
           "--wrap", flags.wrap,
           "number of counts at which the counter wraps, such as 65536 (default: none, or one "
           "turn)")
       ->type_name("COUNTS")
+      ->needs(encoder)
       ->check(positive());
   verb.add_option("--index", flags.index, "channel of the index pulse, where the angle is 0")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->needs(encoder);
   verb.add_option("--edges", flags.edges,
                   "file of the encoder's edges: time and count after each, on the clock of FILE")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->needs(encoder);
 }
 
 void read_encoder_too(const EncoderFlags& flags, InputFlags& input) {

@@ -118,20 +118,24 @@ void RecordGuide::opened(const Recording& head) {
   }
 }
 
+void RecordGuide::report(const calibrate::GuideStep& step, std::vector<std::string>& lines) {
+  const bool is_prompt = step.kind == GuideKind::prompt;
+  lines.push_back((is_prompt ? "→ " : "  ") + step.text);
+  if (!is_prompt) said_ = step.text;
+}
+
 std::vector<std::string> RecordGuide::samples(const Block& block) {
   if (!guide_) return {};
   std::vector<std::string> lines = keys();
-  for (const calibrate::GuideStep& step : guide_->add(block)) {
-    lines.push_back((step.kind == GuideKind::prompt ? "→ " : "  ") + step.text);
-    if (step.kind != GuideKind::prompt) said_ = step.text;
-  }
+  for (const calibrate::GuideStep& step : guide_->add(block)) report(step, lines);
   while (errors_g_.size() < guide_->poses().size())
     errors_g_.push_back(
         guide_->picture().error_g.value_or(std::numeric_limits<double>::quiet_NaN()));
   return lines;
 }
 
-// Enter: skip this position; q: end the procedure. With --stream the words "skip" and "quit".
+// Enter: skip this position; p: repeat the one that contradicts the others; q: end the procedure.
+// With --stream the words "skip", "repeat" and "quit".
 std::vector<std::string> RecordGuide::keys() {
   std::vector<std::string> lines;
   pollfd input{STDIN_FILENO, POLLIN, 0};
@@ -139,15 +143,24 @@ std::vector<std::string> RecordGuide::keys() {
   if (command_.source == "-" || !is_asked || poll(&input, 1, 0) <= 0) return lines;
   std::array<char, 64> typed{};
   const ssize_t count = read(STDIN_FILENO, typed.data(), typed.size());
-  const std::string_view text(typed.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
-  ended_ |= text.find_first_of("qQ") != std::string_view::npos;
-  if (ended_ || text.find('\n') == std::string_view::npos) return lines;
-  for (const calibrate::GuideStep& step : guide_->skip()) lines.push_back("→ " + step.text);
+  typed_.append(typed.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  for (std::size_t end = 0; (end = typed_.find('\n')) != std::string::npos;) {
+    const std::string word = typed_.substr(0, end);
+    typed_.erase(0, end + 1);
+    ended_ |= word == "q" || word == "Q" || word == "quit";
+    if (ended_) return lines;
+    const bool again = word == "p" || word == "P" || word == "repeat";
+    for (const calibrate::GuideStep& step : again ? guide_->repeat() : guide_->skip())
+      report(step, lines);
+  }
   return lines;
 }
 
 std::string RecordGuide::live() const {
-  return guide_ ? guide_->live().words + "   (Enter: leave it out, q Enter: that will do)" : "";
+  if (!guide_) return "";
+  const calibrate::GuideLive live = guide_->live();
+  return fmt::format("{}   (Enter: leave it out, {}q Enter: that will do)", live.words,
+                     live.can_repeat ? "p Enter: repeat what contradicts, " : "");
 }
 
 std::string RecordGuide::picture() const {

@@ -35,10 +35,12 @@ class RecordGuide {
 
  private:
   [[nodiscard]] std::vector<std::string> keys();
+  void report(const calibrate::GuideStep& step, std::vector<std::string>& lines);
 
   RecordCommand command_;
   std::optional<calibrate::PoseGuide> guide_;
   std::string why_not_, said_;
+  std::string typed_;             ///< up to a line's end
   std::vector<double> errors_g_;  ///< after each pose; NaN where unknown
   bool ended_ = false;            ///< by the user
 };

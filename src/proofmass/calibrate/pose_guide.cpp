@@ -169,10 +169,25 @@ std::vector<GuideStep> PoseGuide::skip() {
   return steps;
 }
 
+std::vector<GuideStep> PoseGuide::repeat() {
+  std::vector<GuideStep> steps;
+  if (state_->plan->done()) return steps;
+  if (!state_->plan->repeat()) {
+    state_->say(GuideKind::redo, "No position contradicts the others.", steps);
+    return steps;
+  }
+  state_->open = false;
+  state_->say_next(steps);
+  return steps;
+}
+
 GuideLive PoseGuide::live() const {
   const State& s = *state_;
   const RestState& now = s.rests.state();
-  GuideLive live{.phase = now.phase, .seconds_left = {}, .words = {}};
+  GuideLive live{.phase = now.phase,
+                 .seconds_left = {},
+                 .words = {},
+                 .can_repeat = !s.plan->done() && s.plan->can_repeat()};
   const std::string off = now.newest_there ? s.plan->off_words(vector_of(now.newest_mean)) : "";
   switch (now.phase) {
     case RestPhase::listening:

@@ -57,6 +57,7 @@ struct GuideLive {
   signal::RestPhase phase = signal::RestPhase::listening;
   std::optional<double> seconds_left;  ///< of the current rest
   std::string words;                   ///< "hold still: 3 s more", "34° to go"
+  bool can_repeat = false;             ///< a pose contradicts the others
 };
 
 /// An accepted position. Directions are unit vectors upwards, in the sensor's axes.
@@ -69,12 +70,32 @@ struct PlacedPose {
   bool suspect = false;  ///< contradicts the others, and is left out
 };
 
+/// The figures of the poses so far, with their standard deviations.
+struct GuideFigures {
+  Eigen::Vector3d bias_g, bias_std_g;
+  Eigen::Vector3d scale, scale_std;           ///< output at 1 g, less the bias
+  Eigen::Vector3d angles_rad, angle_std_rad;  ///< misalignment yz, zy, zx
+};
+
+/// Standard deviation of |f| of a calibrated measurement at 1 g, by which way is up, on two Lambert
+/// (equal-area) maps of the hemispheres about +z and −z. Row i and column k of a map are at v and
+/// u = −1, …, 1; with r² = u² + v² the direction is 2 asin(r/√2) from its middle, towards +y as v
+/// and towards +x (on the map of −z: −x) as u. Where r > 1 it lies in the other hemisphere.
+struct GuideMaps {
+  static constexpr Eigen::Index size = 17;
+  Eigen::Matrix<double, size, size> plus_z_g, minus_z_g;
+  double largest_g = 0.0;
+};
+
 /// What a picture of the procedure shows.
 struct GuidePicture {
   std::string prompt;                        ///< the current instruction
   std::optional<double> held;                ///< part of the current rest that is over, 0 … 1
   std::optional<Eigen::Vector3d> now, next;  ///< orientation now, and the one wanted
   std::optional<double> error_g;             ///< largest error at 1 g of the figures so far, 1 std
+  std::optional<double> next_gain;           ///< part by which the next pose reduces error_g
+  std::optional<GuideFigures> figures;       ///< once nine parameters are determined
+  std::optional<GuideMaps> maps;             ///< likewise
   std::vector<PlacedPose> poses;             ///< multi_position only
 };
 
@@ -103,6 +124,9 @@ class PoseGuide {
   [[nodiscard]] std::vector<GuideStep> add(const Block& block);
   /// Skips the requested position.
   [[nodiscard]] std::vector<GuideStep> skip();
+  /// Requests the position that contradicts the others once more; both count, so that the fit can
+  /// say which of them is wrong.
+  [[nodiscard]] std::vector<GuideStep> repeat();
   [[nodiscard]] GuideLive live() const;
   [[nodiscard]] GuidePicture picture() const;
   [[nodiscard]] bool done() const;

@@ -2,11 +2,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <optional>
 #include <string_view>
+#include <vector>
 
+#include "proofmass/calibrate/guide/fit.hpp"
 #include "proofmass/calibrate/guide/turned_axes.hpp"
 #include "proofmass/calibrate/multi_position.hpp"
 #include "proofmass/core/random.hpp"
@@ -177,6 +181,99 @@ TEST(PoseGuide, RecognisesARepeatedPosition) {
     ASSERT_EQ(bench.count(GuideKind::redo), 1U);
     EXPECT_NE(bench.last(GuideKind::redo)->text.find("pose 1 again"), std::string::npos);
   }
+}
+
+TEST(PoseGuide, RepeatsThePositionThatContradictsTheOthers) {
+  GuideOptions options = options_of(GuideProcedure::multi_position);
+  options.target_std_g = 1e-5;  // not reached
+  Bench bench(options);
+  bench.rest(Vector3d::UnitZ(), 4.0);
+  constexpr std::size_t bad = 6;
+  Vector3d bad_up = Vector3d::Zero();
+  for (int k = 0; k < 40 && bench.guide.poses().size() < 13; ++k) {
+    const Vector3d up = asked_for(bench.last(GuideKind::prompt)->text);
+    const bool is_bad = bench.guide.poses().size() + 1 == bad;
+    bench.reads(is_bad ? Vector3d::Constant(0.3) : Vector3d::Zero(), Vector3d::Ones());
+    if (is_bad) bad_up = up;
+    bench.move_to(up);
+    bench.rest(up, 22.0);
+  }
+  ASSERT_TRUE(bench.guide.picture().poses[bad - 1].suspect);
+  EXPECT_TRUE(bench.guide.live().can_repeat);
+  const std::vector<GuideStep> asked = bench.guide.repeat();
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_NE(asked[0].text.find("place it as for pose 6 again"), std::string::npos) << asked[0].text;
+  EXPECT_GT(bench.guide.picture().next->dot(bad_up), 0.99);
+  EXPECT_FALSE(bench.guide.picture().next_gain);
+  bench.move_to(bad_up);
+  bench.rest(bad_up, 22.0);
+  ASSERT_EQ(bench.guide.poses().size(), 14U);
+  const GuidePicture after = bench.guide.picture();
+  EXPECT_TRUE(after.poses[bad - 1].suspect);
+  EXPECT_FALSE(after.poses[13].suspect);
+  EXPECT_TRUE(after.next_gain);
+  // Without a request, the same position once more is refused.
+  bench.move_to(Vector3d(1.0, 0.2, 0.4));
+  bench.move_to(bad_up);
+  bench.rest(bad_up, 22.0);
+  EXPECT_EQ(bench.guide.poses().size(), 14U);
+}
+
+TEST(PoseGuide, RepeatsNothingWhereNothingContradicts) {
+  Bench bench(options_of(GuideProcedure::multi_position));
+  bench.rest(Vector3d::UnitZ(), 6.0);
+  EXPECT_FALSE(bench.guide.live().can_repeat);
+  const std::vector<GuideStep> said = bench.guide.repeat();
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0].text, "No position contradicts the others.");
+}
+
+// The scatter of |f| over many fits, in four directions, against what the maps say of one of them.
+TEST(GuideFit, MapsShowTheScatterOfAMeasurementOf1G) {
+  constexpr double noise_g = 1e-3;
+  constexpr int fits = 400;
+  const Vector3d bias(0.02, -0.01, 0.03), scale(1.01, 0.98, 1.0);
+  const auto output = [&](const Vector3d& up) -> Vector3d { return bias + scale.cwiseProduct(up); };
+  const std::vector<Vector3d> ups{{0, 0, 1},  {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0},
+                                  {0, -1, 0}, {1, 1, 0},  {1, 0, 1}, {0, 1, 1},  {-1, 1, 0},
+                                  {1, 0, -1}, {0, -1, 1}, {1, 1, 1}};
+  constexpr auto middle = GuideMaps::size / 2;
+  const std::array<Vector3d, 4> places{
+      {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, Vector3d(-1, -1, 0).normalized()}};
+  std::array<double, 4> squares{};
+  std::optional<GuideMaps> maps;
+  Random random(7, "fits");
+  for (int k = 0; k < fits; ++k) {
+    std::vector<Pose> poses;
+    for (const Vector3d& up : ups) {
+      Pose pose;
+      pose.mean = output(up.normalized());
+      for (Eigen::Index a = 0; a < 3; ++a) pose.mean(a) += noise_g * random.normal();
+      pose.mean_covariance = noise_g * noise_g * Eigen::Matrix3d::Identity();
+      pose.samples = 100;
+      poses.push_back(pose);
+    }
+    const std::optional<GuideFit> fit = GuideFit::of(poses, 1e6);
+    ASSERT_TRUE(fit && fit->has_nine());
+    if (!maps) maps = fit->maps();
+    for (std::size_t p = 0; p < places.size(); ++p)
+      squares[p] += std::pow(fit->reader().force(output(places[p])).norm() - 1.0, 2);
+  }
+  // r = 1 is the equator: u = 1 is +x on the map of +z; (−1, −1)/√2 lies between two columns.
+  const auto std_at = [&](std::size_t p) {
+    if (p == 0) return maps->plus_z_g(middle, middle);
+    if (p == 1) return maps->minus_z_g(middle, middle);
+    if (p == 2) return maps->plus_z_g(middle, GuideMaps::size - 1);
+    const double at = middle * (1.0 - std::sqrt(0.5));
+    const auto low = static_cast<Eigen::Index>(at);
+    const double part = at - static_cast<double>(low);
+    return (1.0 - part) * maps->plus_z_g(low, low) + part * maps->plus_z_g(low + 1, low + 1);
+  };
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    const double scatter = std::sqrt(squares[p] / fits);
+    EXPECT_NEAR(std_at(p) / scatter, 1.0, 0.15) << p << ": " << scatter;
+  }
+  EXPECT_NEAR(maps->plus_z_g(middle, 0), maps->minus_z_g(middle, GuideMaps::size - 1), 1e-12);
 }
 
 TEST(PoseGuide, IgnoresADisturbanceThatLeavesThePositionUnchanged) {

@@ -44,7 +44,7 @@ struct BenchOptions {
 ///     POST   /api/live                       {source, file, options} → {id}: starts a recorder
 ///     GET    /api/live/ID                    its state
 ///     DELETE /api/live/ID                    ends it; one that has ended is forgotten
-///     POST   /api/live/ID/skip, quit         answers to a procedure
+///     POST   /api/live/ID/skip, repeat, quit answers to a procedure
 ///
 /// Everything else is 404. Errors are {"error": text}.
 class Bench {

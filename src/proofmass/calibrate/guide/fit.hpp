@@ -7,6 +7,7 @@
 #include "proofmass/calibrate/multi_position.hpp"
 #include "proofmass/calibrate/multi_position/norm_model.hpp"
 #include "proofmass/calibrate/pose.hpp"
+#include "proofmass/calibrate/pose_guide.hpp"
 #include "proofmass/core/view.hpp"
 
 namespace proofmass::calibrate {
@@ -34,6 +35,8 @@ class GuideFit {
   /// Output at 1 g of the least sensitive axis.
   [[nodiscard]] double one_g() const;
   [[nodiscard]] ForceReader reader() const;
+  [[nodiscard]] GuideFigures figures() const;
+  [[nodiscard]] GuideMaps maps() const;
   /// `up` is zero if no position is left.
   [[nodiscard]] NextPose next(View<Eigen::Vector3d> taken) const;
   [[nodiscard]] const std::vector<PoseResidual>& poses() const { return fit_.poses; }

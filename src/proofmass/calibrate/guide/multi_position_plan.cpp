@@ -51,6 +51,8 @@ class MultiPositionPlan final : public GuidePlan {
     choose_next();
     done_ = next_words_.empty();
   }
+  bool repeat() override;
+  bool can_repeat() const override { return latest_suspect().has_value(); }
   bool done() const override { return done_; }
   std::string place_words(const Eigen::Vector3d& mean) const override {
     return reader_ ? direction_words(reader_->force(mean)) : "";
@@ -63,6 +65,7 @@ class MultiPositionPlan final : public GuidePlan {
   [[nodiscard]] std::optional<double> std_of_rest() const;
   [[nodiscard]] std::vector<Eigen::Vector3d> taken() const;
   [[nodiscard]] std::vector<GuideStep> suspects();
+  [[nodiscard]] std::optional<std::size_t> latest_suspect() const;
 
   GuideOptions options_;
   std::size_t fewest_;
@@ -71,12 +74,32 @@ class MultiPositionPlan final : public GuidePlan {
   double noise_dof_ = 0.0;
   std::optional<ForceReader> reader_;
   std::optional<GuideFit> fit_;
+  std::optional<GuideMaps> maps_;
   std::vector<Eigen::Vector3d> skipped_;
   std::vector<std::size_t> named_suspects_;
   Eigen::Vector3d next_up_ = Eigen::Vector3d::Zero();
   std::string next_words_;
+  double next_gain_ = 0.0;
+  std::optional<std::size_t> repeated_;  ///< the pose that is requested again
   bool done_ = false;
 };
+
+std::optional<std::size_t> MultiPositionPlan::latest_suspect() const {
+  if (!fit_ || !fit_->has_nine()) return std::nullopt;
+  for (std::size_t k = poses_.size(); k-- > 0;)
+    if (fit_->poses()[k].suspect) return k;
+  return std::nullopt;
+}
+
+bool MultiPositionPlan::repeat() {
+  const std::optional<std::size_t> suspect = latest_suspect();
+  if (!suspect) return false;
+  repeated_ = suspect;
+  next_up_ = reader_->force(poses_[*suspect].mean).normalized();
+  next_words_ =
+      fmt::format("place it as for pose {} again, {}", *suspect + 1, direction_words(next_up_));
+  return true;
+}
 
 std::string MultiPositionPlan::prompt() const {
   std::string text =
@@ -109,7 +132,7 @@ std::optional<std::string> MultiPositionPlan::refusal(const Eigen::Vector3d& mea
     const double noise = std::sqrt(poses_.back().mean_covariance.trace());
     nearest /= std::max(0.5 * widest, 100.0 * noise);
   }
-  if (nearest > again_rad) return std::nullopt;
+  if (nearest > again_rad || which == repeated_) return std::nullopt;
   if (which + 1 == poses_.size() && nearest < unmoved_rad) return "";
   return fmt::format("That is pose {} again: turn it further.", which + 1);
 }
@@ -132,6 +155,8 @@ std::vector<GuideStep> MultiPositionPlan::take(std::vector<Pose>& poses) {
   poses_ = poses;
   fit_ = GuideFit::of(poses_, noise_dof_);
   if (fit_) reader_ = fit_->reader();
+  maps_.reset();
+  if (fit_ && fit_->has_nine()) maps_ = fit_->maps();
   choose_next();
   std::vector<GuideStep> steps = suspects();
   const bool nine = fit_ && fit_->has_nine();
@@ -158,11 +183,13 @@ std::vector<Eigen::Vector3d> MultiPositionPlan::taken() const {
 
 void MultiPositionPlan::choose_next() {
   const std::vector<Eigen::Vector3d> before = taken();
+  repeated_.reset();
   next_words_.clear();
   if (fit_ && fit_->has_nine()) {
     const NextPose next = fit_->next(before);
     next_up_ = next.up;
     next_words_ = next.words;
+    next_gain_ = next.gain;
     return;
   }
   // While the poses' orientations are unknown, the requested ones are assumed.
@@ -198,7 +225,12 @@ void MultiPositionPlan::draw(GuidePicture& picture) const {
   if (picture.now) picture.now = up_of(*picture.now);
   if (!done_ && !next_words_.empty()) picture.next = next_up_;
   const bool nine = fit_ && fit_->has_nine();
-  if (nine) picture.error_g = fit_->error_g();
+  if (nine) {
+    picture.error_g = fit_->error_g();
+    picture.figures = fit_->figures();
+    picture.maps = maps_;
+    if (picture.next && !repeated_) picture.next_gain = next_gain_;
+  }
   for (std::size_t k = 0; k < poses_.size(); ++k) {
     PlacedPose pose{.words = place_words(poses_[k].mean), .up = up_of(poses_[k].mean)};
     if (nine) {

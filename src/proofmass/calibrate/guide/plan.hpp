@@ -33,6 +33,9 @@ class GuidePlan {
   /// Message if the current rest ended after this time.
   [[nodiscard]] virtual std::string lost_words(double seconds) = 0;
   virtual void skip() = 0;
+  /// Requests the latest position that contradicts the others again; false if there is none.
+  virtual bool repeat() { return false; }
+  [[nodiscard]] virtual bool can_repeat() const { return false; }
   [[nodiscard]] virtual bool done() const = 0;
   /// Orientation of a measurement: "+z up, 12° to +x", "at 29.8°"; empty if unknown.
   [[nodiscard]] virtual std::string place_words(const Eigen::Vector3d& mean) const = 0;

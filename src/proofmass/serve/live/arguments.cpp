@@ -44,6 +44,16 @@ Status check_source(const std::string& source, const Folder& folder) {
   return Done{};
 }
 
+// What a browser starts sends to a reader on this machine alone.
+bool is_on_this_machine(std::string_view address) {
+  for (const std::string_view host : {"udp:127.0.0.1:", "udp:localhost:"}) {
+    if (!address.starts_with(host)) continue;
+    const std::string_view port = address.substr(host.size());
+    return !port.empty() && port.find_first_not_of("0123456789") == std::string_view::npos;
+  }
+  return false;
+}
+
 // "sim-20261122-123005.mcap"
 std::string default_file(const std::string& source) {
   return fmt::format("{}-{:%Y%m%d-%H%M%S}.mcap", source.substr(0, source.find(':')),
@@ -67,14 +77,16 @@ Status add_live_option(const std::string& name,
                        const nlohmann::json& value,
                        const Folder& folder,
                        std::vector<std::string>& arguments) {
-  constexpr std::array<std::string_view, 11> known{
-      "rate",     "unit",      "estimate",  "radius",     "lag",    "axis",
-      "duration", "procedure", "positions", "target-std", "minutes"};
+  constexpr std::array<std::string_view, 13> known{
+      "rate",     "unit",      "estimate",  "radius",     "bandwidth", "lag",    "axis",
+      "duration", "procedure", "positions", "target-std", "minutes",   "send-to"};
   const bool is_known = std::ranges::find(known, name) != known.end();
   if (!is_known && name != "sensor") return bad("record has no option " + name + " here");
   std::string word = value.is_string() ? value.get<std::string>() : "";
   if (value.is_number()) word = value.dump();
   if (word.empty() || !is_printable(word)) return bad(name + ": expected a text or a number");
+  if (name == "send-to" && !is_on_this_machine(word))
+    return bad("send-to: expected udp:127.0.0.1:PORT; record --send-to reaches other machines");
   if (name == "sensor") {
     const auto inside = folder.existing(word);
     if (!inside) return inside.error().at("sensor");

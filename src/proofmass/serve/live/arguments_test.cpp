@@ -75,6 +75,18 @@ TEST_F(LiveArgumentsTest, OnlyKnownOptionsAreTaken) {
   EXPECT_TRUE(is_refused({{"file", "a.mcap"}}));
 }
 
+TEST_F(LiveArgumentsTest, EstimatesAreSentToThisMachineOnly) {
+  const auto to = [](const char* address) {
+    return json{{"source", "sim:wheel"},
+                {"options", {{"estimate", "wheel"}, {"send-to", address}}}};
+  };
+  EXPECT_TRUE(has(of(to("udp:127.0.0.1:5005")).value(), "--send-to=udp:127.0.0.1:5005"));
+  EXPECT_TRUE(of(to("udp:localhost:5005")));
+  for (const char* address : {"udp:192.168.0.7:5005", "udp:127.0.0.1:", "udp:127.0.0.1:5005:x",
+                              "udp:127.0.0.1.example.org:5", "unix:/dev/log", "5005"})
+    EXPECT_TRUE(is_refused(to(address))) << address;
+}
+
 TEST_F(LiveArgumentsTest, AProcedureEndsWithNewFilesBesideItsRecording) {
   const json procedure{{"procedure", "multi-position"}};
   const auto found =

@@ -146,8 +146,8 @@ Response LiveBench::one(const std::string& method, const std::string& path) {
     return error_response(404, "no such source");
   if (rest.empty() && method == "GET") return json_response(describe(*found));
   if (rest.empty() && method == "DELETE") return end(*found);
-  // Answers to a procedure: leave this position out; that will do.
-  if (method == "POST" && (rest == "/skip" || rest == "/quit")) {
+  // Answers to a procedure: leave this position out; once more the one that contradicts; end it.
+  if (method == "POST" && (rest == "/skip" || rest == "/repeat" || rest == "/quit")) {
     if (!found->source->say(rest.substr(1))) return error_response(409, "the source has ended");
     return json_response(describe(*found));
   }

@@ -142,7 +142,7 @@ void LiveLines::event(const RecordEvent& event) {
 }
 
 void LiveLines::refresh(Clock::time_point now) {
-  constexpr std::chrono::milliseconds frame{40}, state{200};
+  constexpr std::chrono::milliseconds frame{25}, state{200};
   if (now - framed_ >= frame) {
     framed_ = now;
     write_rows();

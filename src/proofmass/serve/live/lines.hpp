@@ -25,7 +25,7 @@ namespace proofmass::serve {
 ///     event       a gap, a stall, a note
 ///     end         how the recording ended
 ///
-/// A frame of 40 ms has one `rows` line; the number of buckets is at most a thousand a second,
+/// A frame of 25 ms has one `rows` line; the number of buckets is at most a thousand a second,
 /// whatever the rate of the source. For one thread.
 class LiveLines {
  public:
