@@ -2,8 +2,12 @@
 // and no error is larger than chance and rare gross draws allow.
 #include "wheel_coverage.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <string>
+#include <string_view>
+
+#include "proofmass/estimate/wheel.hpp"
 
 namespace proofmass::wheel_coverage_test {
 namespace {
@@ -29,15 +33,30 @@ TEST_P(WheelCoverage, IsAsStated) {
     EXPECT_GE(tally->coverage_95(), least_coverage(tally->given()));
     EXPECT_LT(tally->largest(), 5.0);
   }
-  // Pushes by hand and a speed with 1 % ripple are known to make the constants slightly
-  // overconfident (docs/methods/wheel.md); an interval with a coverage of one half would be
-  // useless.
+  // A speed with 1 % ripple is known to make the constants slightly overconfident
+  // (docs/methods/wheel.md); an interval with a coverage of one half would be useless.
   for (const Tally* tally :
        {&found.radius, &found.bias, &found.scale, &found.skew, &found.encoder}) {
     if (tally->given() == 0) continue;
     EXPECT_GE(tally->coverage_95(), least_coverage(tally->given()) - 0.1);
     EXPECT_LT(tally->largest(), 8.0);
   }
+}
+
+// The hub of a wheel that is pushed by hand accelerates within a turn, which resembles a skew.
+TEST(PushedWheel, HasNoSkewWithoutAnotherMeasurementOfItsMotion) {
+  const auto pushed =
+      std::ranges::find(wheel_world::scenarios(), std::string_view("pushed"), &Scenario::name);
+  ASSERT_NE(pushed, wheel_world::scenarios().end());
+  constexpr std::uint64_t seed = 5001;
+  const wheel_world::World world = pushed->draw(seed);
+  const auto said =
+      estimate::estimate_wheel(wheel_world::record(world, seed).sensors, pushed->options(world));
+  ASSERT_TRUE(said);
+  EXPECT_FALSE(said->sensors.front().skew_rad);
+  EXPECT_TRUE(std::ranges::any_of(said->not_observable, [](const std::string& sentence) {
+    return sentence.find("acceleration of the vehicle") != std::string::npos;
+  }));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios,

@@ -89,9 +89,9 @@ std::string joined(const std::vector<std::string>& names) {
 std::string sentence(const Eigen::VectorXd& direction,
                      const std::vector<Constant>& constants,
                      const std::vector<WheelSensorFit>& sensors,
-                     bool radius_given) {
+                     const WheelFit& fit) {
   std::vector<std::string> names;
-  bool place = false, bias = false;
+  bool place = false, bias = false, shape = true;
   std::size_t sensor = sensors.size();
   bool one_sensor = true;
   const auto share = [&](std::size_t i) {
@@ -107,15 +107,21 @@ std::string sentence(const Eigen::VectorXd& direction,
     names.push_back(name_of(constants[i]));
     place = place || constants[i].kind == Kind::place;
     bias = bias || constants[i].kind == Kind::bias;
+    shape = shape && (constants[i].kind == Kind::scale || constants[i].kind == Kind::skew);
     one_sensor = one_sensor && (sensor == sensors.size() || sensor == constants[i].sensor);
     sensor = constants[i].sensor;
   }
   const std::string whose = one_sensor ? sensors[sensor].name : "the two sensors";
-  if (place && radius_given)
+  if (place && fit.given_radius_m)
     return "the mounting azimuth and the biases of " + whose +
            " are not separable at one speed (ω²R): record a second speed";
   const std::string what = joined(names) + " of " + whose;
   if (place && bias) return what + " are not separable at one speed: record a second speed";
+  constexpr double strong_bursts = 0.01;
+  if (shape && fit.hub_bursts > strong_bursts)
+    return what +
+           " cannot be separated from the acceleration of the vehicle, which changes within a "
+           "turn: record a gyroscope or an encoder too, or turn the wheel on a stand";
   if (place)
     return what + " does not show at this speed: the centripetal force is too small; turn faster";
   return what + (names.size() > 1 ? " are not separable" : " is not identifiable") +
@@ -182,8 +188,7 @@ std::vector<std::string> say_not_observable(const WheelFit& fit,
   std::vector<std::string> sentences;
   for (Eigen::Index i = axes.values.size();
        i-- > 0 && axes.values(i) > undetermined * undetermined;) {
-    const std::string text =
-        sentence(axes.vectors.col(i), constants, sensors, fit.given_radius_m.has_value());
+    const std::string text = sentence(axes.vectors.col(i), constants, sensors, fit);
     if (std::ranges::find(sentences, text) == sentences.end()) sentences.push_back(text);
   }
   return sentences;

@@ -4,6 +4,7 @@
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/colour.hpp"
+#include "proofmass/estimate/wheel/held_figures.hpp"
 #include "proofmass/estimate/wheel/rivals.hpp"
 #include "proofmass/estimate/wheel/settle.hpp"
 
@@ -79,19 +80,6 @@ void note_backward(const WheelModel<S>& model,
   series.accel_radps2[k] = now.accel;
   series.accel_std_radps2[k] = std_of(now.by_accel);
   fit.track.path.moving[k] = mean.template head<wheel::moving>();
-}
-
-/// Between the first epoch and the last, from the state after the last.
-template <int S>
-Uncertain turns_in(const WheelModel<S>& model, const Gaussian<wheel::states(S)>& end) {
-  Mat<wheel::states(S)> first = end.mean;
-  first(wheel::angle) = end.mean(wheel::start);
-  const auto from = model.motion(first), to = model.motion(end.mean);
-  Mat<wheel::states(S)> slope = to.by_angle - from.by_angle;
-  slope(wheel::angle) = to.by_angle(wheel::angle);
-  slope(wheel::start) = -from.by_angle(wheel::angle);
-  return {(to.angle - from.angle) / rad_per_turn,
-          std::sqrt(std::max(slope.dot(end.cov * slope), 0.0)) / rad_per_turn};
 }
 
 /// The extended filter as it would run on calibrated sensors: the initial motion unknown, the
@@ -185,7 +173,9 @@ WheelFit smooth_at_places(const WheelReadings& readings,
   constexpr int count = wheel::standing(S);
   fit.constants = end.mean.template tail<count>();
   const auto by = settled.widened.asDiagonal();
-  fit.constants_cov = by * end.cov.template bottomRightCorner<count, count>() * by;
+  const auto of_passes = end.cov.template bottomRightCorner<count, count>();
+  fit.constants_cov = by * of_passes * by;
+  fit.constants_widened = fit.constants_cov - of_passes;
   fit.turns = turns_in(model, end);
   const std::size_t half = size / 2;
   const double wider =
@@ -197,172 +187,6 @@ WheelFit smooth_at_places(const WheelReadings& readings,
   fit.ekf_turns =
       (fit.series.filtered_angle_rad.back() - fit.series.filtered_angle_rad.front()) / rad_per_turn;
   return fit;
-}
-
-void add_in_square(double& std, double more) {
-  std = std::hypot(std, more);
-}
-
-/// The smoothed motion and the constants of one run.
-struct Run {
-  std::vector<double> angle_rad, speed_radps, accel_radps2;
-  Eigen::VectorXd constants{};
-  double turns = 0.0;
-};
-
-template <int S>
-Run run_at(const WheelModel<S>& model, const WheelPrior& prior) {
-  const std::size_t size = model.size();
-  Run run{std::vector<double>(size), std::vector<double>(size), std::vector<double>(size)};
-  Gaussian<wheel::states(S)> end = prior_state<S>(prior).x;
-  smooth(
-      model, prior_state<S>(prior), wheel_gate,
-      [&](std::size_t, const auto& step) { end = step.filtered; },
-      [&](std::size_t k, const auto& step, const auto& later) {
-        const auto now = model.motion(later.mean(step.filtered));
-        run.angle_rad[k] = now.angle;
-        run.speed_radps[k] = now.speed;
-        run.accel_radps2[k] = now.accel;
-      });
-  run.constants = end.mean.template tail<wheel::standing(S)>();
-  run.turns = turns_in(model, end).value;
-  return run;
-}
-
-/// Contribution of the parameters that the passes hold: the lever arms, the delay of the sensors'
-/// filters and the rolling radius; the last two are not reliably determined by any likelihood. The
-/// smoother is repeated with the parameter changed by a share of its standard deviation, and the
-/// differences are extrapolated linearly.
-template <int S>
-class HeldFigures {
- public:
-  HeldFigures(const WheelReadings& readings, const Settled<S>& settled, const WheelPath& about)
-      : readings_(readings),
-        settled_(settled),
-        about_(about),
-        levers_(levers_of(about, readings)),
-        base_(run_at(model(), settled.prior)),
-        base_places_(places_of(model())) {}
-
-  /// Returns false if a run's angle slips relative to the fit's, however small the step: the
-  /// differences are then meaningless, and the fit invalid.
-  [[nodiscard]] bool add_to(WheelFit& fit) const {
-    return add_places(fit) && add(&WheelModel<S>::delay_s, readings_.delay_s.std, fit) &&
-           add(&WheelModel<S>::rolling_radius_m, readings_.rolling_radius_m.std, fit);
-  }
-
- private:
-  /// Along each principal direction of their covariance, by less than a standard deviation: if the
-  /// recording hardly determines the lever arms, that is not a small step.
-  [[nodiscard]] bool add_places(WheelFit& fit) const {
-    constexpr double longest_step_m = 2e-3;
-    const SymmetricEigen axes = symmetric_eigen(settled_.places_cov);
-    for (Eigen::Index i = 0; i < axes.values.size(); ++i) {
-      const double std_m = std::sqrt(std::max(axes.values(i), 1e-16));
-      const auto moved = [&](double share) {
-        WheelPrior prior = settled_.prior;
-        *prior.places += share * std_m * axes.vectors.col(i);
-        return run_at(model(), prior);
-      };
-      if (!add(moved, std::min(1.0, longest_step_m / std_m), fit)) return false;
-    }
-    return true;
-  }
-
-  /// The lever arms are estimated anew with the changed parameter.
-  [[nodiscard]] bool add(double WheelModel<S>::* figure, double std, WheelFit& fit) const {
-    if (!(std > 0.0)) return true;
-    const auto moved = [&](double share) {
-      auto other = model();
-      other.*figure += share * std;
-      WheelPrior prior = settled_.prior;
-      *prior.places += places_of(other) - base_places_;
-      return run_at(other, prior);
-    };
-    return add(moved, 1.0, fit);
-  }
-
-  [[nodiscard]] WheelModel<S> model() const {
-    return held_model<S>(readings_, settled_.noise, about_);
-  }
-  [[nodiscard]] Places places_of(const WheelModel<S>& model) const {
-    return places_by_levers(model, levers_, settled_.prior, settled_.belief).mean;
-  }
-
-  /// Whether the run's angle slips.
-  [[nodiscard]] bool slips(const Run& run) const {
-    constexpr double slip_rad = 0.5;
-    return !std::ranges::equal(run.angle_rad, base_.angle_rad,
-                               [](double a, double b) { return std::abs(a - b) < slip_rad; });
-  }
-
-  /// A run that slips is tried again with a smaller share.
-  template <class RunAt>
-  [[nodiscard]] bool add(const RunAt& moved, double share, WheelFit& fit) const {
-    Run run = moved(share);
-    for (int again = 0; slips(run) && again < 3; ++again) run = moved(share *= 0.1);
-    if (slips(run)) return false;
-    const double reach = 1.0 / share;
-    WheelSeries& series = fit.series;
-    std::size_t at = 0;
-    for (std::size_t k = 0; k < series.time_s.size(); ++k) {
-      const auto& times = readings_.time_s;
-      while (at + 2 < times.size() && times[at + 1] <= series.time_s[k]) ++at;
-      const double part =
-          std::clamp((series.time_s[k] - times[at]) / (times[at + 1] - times[at]), 0.0, 1.0);
-      const auto off = [&](std::vector<double> Run::* of) {
-        return reach * std::lerp((run.*of)[at] - (base_.*of)[at],
-                                 (run.*of)[at + 1] - (base_.*of)[at + 1], part);
-      };
-      const double angle = off(&Run::angle_rad);
-      add_in_square(series.angle_std_rad[k], angle);
-      add_in_square(series.filtered_angle_std_rad[k], angle);
-      add_in_square(series.speed_std_radps[k], off(&Run::speed_radps));
-      add_in_square(series.accel_std_radps2[k], off(&Run::accel_radps2));
-    }
-    const Eigen::VectorXd change = reach * (run.constants - base_.constants);
-    fit.constants_cov += change * change.transpose();
-    add_in_square(fit.turns.std, reach * (run.turns - base_.turns));
-    return true;
-  }
-
-  const WheelReadings& readings_;
-  const Settled<S>& settled_;
-  const WheelPath& about_;
-  WheelLevers levers_;
-  Run base_;
-  Places base_places_;
-};
-
-/// Adds the contribution of the held parameters, from runs on the averaged measurements, since
-/// differences are smooth, or on all of them if those slip. If these slip too, the recording does
-/// not determine the constants, and the angle has the uncertainty of the delay.
-template <int S>
-void add_held_figures(const Settled<S>& settled,
-                      const WheelReadings& averaged,
-                      const WheelPath& averaged_path,
-                      const WheelReadings& readings,
-                      const WheelPath& path,
-                      WheelFit& fit) {
-  WheelFit with = fit;
-  bool added = HeldFigures<S>(averaged, settled, averaged_path).add_to(with);
-  if (!added && averaged.instants.size() < readings.instants.size()) {
-    with = fit;
-    added = HeldFigures<S>(readings, settled, path).add_to(with);
-  }
-  if (!added) {
-    with = std::move(fit);
-    with.constants_cov += with.constants_prior_cov;
-    const std::vector<double>& speed_radps = with.series.speed_radps;
-    const double late_s = readings.delay_s.std;
-    for (std::size_t k = 0; k < speed_radps.size(); ++k) {
-      add_in_square(with.series.angle_std_rad[k], late_s * speed_radps[k]);
-      add_in_square(with.series.filtered_angle_std_rad[k], late_s * speed_radps[k]);
-    }
-    add_in_square(with.turns.std,
-                  late_s * (speed_radps.back() - speed_radps.front()) / rad_per_turn);
-  }
-  fit = std::move(with);
 }
 
 /// Gravity is the reference of scales and lever arms: if it is larger by a fraction, the scales are
@@ -441,6 +265,71 @@ void spread_variance(const WheelReadings& averaged, std::size_t each, WheelReadi
   }
 }
 
+/// If the angular acceleration of a vehicle's wheel varies within a turn, as by the pushes of a
+/// hand, the hub's acceleration ρ α, horizontal, lengthens the measured force by (ρ α)²/2g,
+/// whichever its sign. Without another measurement of the motion the filter estimates α from the
+/// same measurements, and what it leaves of this resembles scales and a skew, without trace in the
+/// residuals. Added is the whole effect, of the variation of α about its mean over each turn.
+void add_hub_bursts(const WheelReadings& readings, const WheelPath& path, WheelFit& fit) {
+  const bool has_speed = std::ranges::any_of(
+      readings.sensors, [](const PlanarReadings& one) { return !one.speed_radps.empty(); });
+  if (has_speed || readings.encoder) return;
+  Moments within;
+  for (std::size_t from = 0, k = 0; k < path.moving.size(); ++k) {
+    const double turned = path.moving[k](wheel::angle) - path.moving[from](wheel::angle);
+    if (std::abs(turned) < rad_per_turn) continue;
+    Moments turn;
+    for (std::size_t i = from; i < k; ++i) turn.add(path.moving[i](wheel::accel));
+    for (std::size_t i = from; i < k; ++i) within.add(path.moving[i](wheel::accel) - turn.mean);
+    from = k;
+  }
+  const Uncertain& rolling = readings.rolling_radius_m;
+  const double hub_mps2 = (rolling.value + rolling.std) * within.std();
+  fit.hub_bursts = 0.5 * square(hub_mps2 / readings.gravity_mps2);
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
+    const int at = wheel::first_of(static_cast<int>(s)) - wheel::first_of(0);
+    for (const int i : {at + wheel::scale, at + wheel::scale + 1, at + wheel::skew}) {
+      fit.constants_cov(i, i) += square(fit.hub_bursts);
+      fit.constants_widened(i, i) +=
+          std::min(square(fit.hub_bursts), fit.constants_prior_cov(i, i));
+    }
+  }
+}
+
+/// Where the wheel rests, its angle is that of gravity with the errors of bias, scale and skew,
+/// δφ = (cos φ δz_u − sin φ δz_v) / g. Motion averages them over a turn.
+template <int S>
+void widen_at_rest(const WheelReadings& readings, WheelFit& fit) {
+  const auto by_constants = [&](std::size_t k) {
+    Eigen::VectorXd by = Eigen::VectorXd::Zero(fit.constants.size());
+    if (!readings.instants[k].stands) return by;
+    for (int s = 0; s < S; ++s) {
+      const double phase =
+          s > 0 ? readings.phase_rad + fit.constants(wheel::phase - wheel::first_of(0)) : 0.0;
+      const double phi = fit.series.angle_rad[k] + phase;
+      const double c = std::cos(phi) / S, sin_phi = std::sin(phi), cos_phi = std::cos(phi);
+      const double d = -sin_phi / S, g = readings.gravity_mps2;
+      const int at = wheel::first_of(s) - wheel::first_of(0);
+      by.segment<2>(at + wheel::bias) << c / g, d / g;
+      by.segment<2>(at + wheel::scale) << c * sin_phi, d * cos_phi;
+      by(at + wheel::skew) = c * cos_phi + d * sin_phi;
+    }
+    return by;
+  };
+  const auto std_of = [&](const Eigen::VectorXd& by) {
+    return std::sqrt(std::max(by.dot(fit.constants_widened * by), 0.0));
+  };
+  WheelSeries& series = fit.series;
+  for (std::size_t k = 0; k < series.angle_rad.size(); ++k) {
+    if (!readings.instants[k].stands) continue;
+    const double more_rad = std_of(by_constants(k));
+    add_in_square(series.angle_std_rad[k], more_rad);
+    add_in_square(series.filtered_angle_std_rad[k], more_rad);
+  }
+  add_in_square(fit.turns.std,
+                std_of(by_constants(series.angle_rad.size() - 1) - by_constants(0)) / rad_per_turn);
+}
+
 template <int S>
 WheelFit fit_sensors(WheelReadings& readings,
                      WheelTrack track,
@@ -475,6 +364,8 @@ WheelFit fit_sensors(WheelReadings& readings,
   fit.constants_prior_cov.template bottomRightCorner<2 * S, 2 * S>() = belief.cov;
   add_held_figures(settled, coarse, coarse_track.path, readings, track.path, fit);
   add_gravity_uncertainty<S>(readings, settled.places_cov * positive_inverse(belief.cov), fit);
+  add_hub_bursts(readings, track.path, fit);
+  widen_at_rest<S>(readings, fit);
   if (readings.encoder) add_nonlinearity<S>(readings.encoder->nonlinearity, fit);
   fit.turns_candidates = turns_candidates(fit);
   return fit;
