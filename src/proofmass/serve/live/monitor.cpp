@@ -43,8 +43,11 @@ Rows copy_of(const Block& block) {
 
 }  // namespace
 
-LiveMonitor::LiveMonitor(const Recording& head)
-    : head_(head), rate_hz_(head.time.rate_hz), clipped_(head.channels.size(), 0) {
+LiveMonitor::LiveMonitor(const Recording& head, std::size_t most_noise_samples)
+    : head_(head),
+      most_noise_samples_(static_cast<double>(most_noise_samples)),
+      rate_hz_(head.time.rate_hz),
+      clipped_(head.channels.size(), 0) {
   for (const std::size_t channel : channels_for_noise(head)) noise_.push_back({channel});
   restart();
   thread_ = std::thread([this] { run(); });
@@ -155,7 +158,8 @@ void LiveMonitor::add_noise(const Rows& rows) {
   constexpr double most_missing = 1000.0;
   if (last_s_) {
     const double missing = std::round((rows.stamps_s.front() - *last_s_) * rate_hz_) - 1.0;
-    if (missing < -0.5 || missing > most_missing)
+    const bool is_full = (*last_s_ - since_s_) * rate_hz_ >= most_noise_samples_;
+    if (missing < -0.5 || missing > most_missing || is_full)
       restart();
     else if (missing > 0.0) {
       const std::vector<double> none(static_cast<std::size_t>(missing),

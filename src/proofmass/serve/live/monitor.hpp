@@ -25,11 +25,14 @@ namespace proofmass::serve {
 ///             and Allan deviation; the pause between two is at least nine times their cost
 ///
 /// The noise is that of the accelerometers, or of the first channels if there are none, six at
-/// most. Missing samples are counted as missing; after more than a thousand in a row it starts
-/// anew. Memory: that of NoiseStream and RunningAudit, and at most `queue_rows` rows.
+/// most. Missing samples are counted as missing; it starts anew after more than a thousand in a
+/// row, and after most_noise_samples: 46 minutes at 48 kHz, a day and a half at 1 kHz. Memory: that
+/// of NoiseStream for so many samples (10 MB a channel), of RunningAudit, and `queue_rows` rows.
 class LiveMonitor {
  public:
-  explicit LiveMonitor(const Recording& head);
+  static constexpr std::size_t default_noise_samples = std::size_t{1} << 27;
+  explicit LiveMonitor(const Recording& head,
+                       std::size_t most_noise_samples = default_noise_samples);
   LiveMonitor(const LiveMonitor&) = delete;
   LiveMonitor& operator=(const LiveMonitor&) = delete;
   ~LiveMonitor();
@@ -55,6 +58,7 @@ class LiveMonitor {
   void hand_out(std::string line);
 
   const Recording head_;
+  const double most_noise_samples_;
   // Used by the thread alone:
   double rate_hz_;  ///< 0 until it is known
   std::optional<signal::RunningAudit> audit_;

@@ -74,6 +74,18 @@ TEST(LiveMonitor, CharacterisesAllSamplesSoFarAndStartsAnewAfterALongGap) {
   EXPECT_NEAR(anew["seconds"].get<double>(), 29.99, 0.01);
 }
 
+// Otherwise the memory would grow for as long as a source is watched.
+TEST(LiveMonitor, StartsTheNoiseAnewAfterSoManySamples) {
+  LiveMonitor monitor(head_of_one_channel(), 2000);
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  const auto noise = [&](double) { return normal(random); };
+  for (std::size_t s = 0; s < 30; ++s) add_second(monitor, 100 * s, 0.0, noise);
+  const json anew =
+      wait_for(monitor, "noise", [](const json& one) { return one["seconds"] < 10.0; });
+  EXPECT_NEAR(anew["seconds"].get<double>(), 8.99, 0.01);
+}
+
 TEST(LiveMonitor, CountsClippedSamplesAndMeasuresTheJitter) {
   LiveMonitor monitor(head_of_one_channel());
   std::size_t clipped = 0;
