@@ -144,6 +144,8 @@ std::vector<std::string> RecordGuide::keys() {
   std::array<char, 64> typed{};
   const ssize_t count = read(STDIN_FILENO, typed.data(), typed.size());
   typed_.append(typed.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  constexpr std::size_t longest_word = 256;
+  if (typed_.size() > longest_word) typed_.clear();
   for (std::size_t end = 0; (end = typed_.find('\n')) != std::string::npos;) {
     const std::string word = typed_.substr(0, end);
     typed_.erase(0, end + 1);
