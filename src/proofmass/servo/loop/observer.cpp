@@ -60,7 +60,11 @@ void MotorObserver::predict(double voltage_v) {
   P = (F * P * F.transpose()).eval();
   P.topLeftCorner<3, 3>() += step.Q;
   P(load_torque, load_torque) += options_.load_torque_walk * options_.load_torque_walk * h;
-  P(play, play) += std::pow(0.05 * half, 2) * h;
+  // A motor that slows down faster than the load by its friction is overrun by it.
+  constexpr double overrun_radps2 = 10.0;
+  const double braking = -along * (motion(1) - w) / h;
+  const double overrun = std::clamp(braking / overrun_radps2 - 1.0, 0.0, 1.0);
+  P(play, play) += std::pow(0.05 * half, 2) * h + half * h * std::abs(w) * std::max(open, overrun);
   x_[motor_angle] = motion(0);
   x_[motor_speed] = motion(1);
   x_[motor_current] = motion(2);

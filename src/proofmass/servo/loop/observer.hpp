@@ -33,7 +33,9 @@ struct MotorSample {
 ///
 ///     β' = ω (1 − (β/δ)² where β points along ω),
 ///
-/// after R. Bouc's hysteresis model, with the load held by its friction.
+/// after R. Bouc's hysteresis model, with the load held by its friction. It is not held exactly,
+/// and overruns a motor that brakes: β is uncertain by its range while the gap is crossed, with the
+/// process noise δ |ω| while it is open or may be.
 /// Source: docs/methods/servo.md.
 class MotorObserver {
  public:

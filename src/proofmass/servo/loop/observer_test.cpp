@@ -22,8 +22,7 @@ MotorModel model_of(const simulate::GearMotorParameters& p) {
 }
 
 // Forwards, backwards through the gap of the gear, forwards: angle and speed are those of the load,
-// within three standard deviations in all but a few samples, and the biases do not matter after a
-// turn.
+// also while the gap is crossed, and the biases do not matter after a turn.
 TEST(MotorObserver, FollowsTheLoadThroughReversals) {
   constexpr double step_s = 0.005, noise = 0.013, bias = 0.1;
   const simulate::GearMotorParameters drive;
