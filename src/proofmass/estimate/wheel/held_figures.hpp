@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,7 +32,7 @@ inline void add_in_square(double& std, double more) {
   std = std::hypot(std, more);
 }
 
-/// The smoothed motion and the constants of one run.
+/// The smoothed motion and the constants of one run, or their differences between two.
 struct Run {
   std::vector<double> angle_rad, speed_radps, accel_radps2;
   Eigen::VectorXd constants{};
@@ -56,10 +58,21 @@ Run run_at(const WheelModel<S>& model, const WheelPrior& prior) {
   return run;
 }
 
+/// The larger of two differences between runs, figure by figure.
+inline void widen(Run& change, const Run& other) {
+  const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b) ? b : a; };
+  for (std::vector<double> Run::* of : {&Run::angle_rad, &Run::speed_radps, &Run::accel_radps2})
+    std::ranges::transform(change.*of, other.*of, (change.*of).begin(), larger);
+  change.constants = change.constants.binaryExpr(other.constants, larger).eval();
+  change.turns = larger(change.turns, other.turns);
+}
+
 /// Contribution of the parameters that the passes hold: the lever arms, the delay of the sensors'
 /// filters and the rolling radius; the last two are not reliably determined by any likelihood. The
 /// smoother is repeated with the parameter changed by a share of its standard deviation, and the
-/// differences are extrapolated linearly.
+/// differences are extrapolated linearly. For the rolling radius of a vehicle, which may be
+/// anything from 0 on, both ends of the range are taken: the skew of a wheel with a ripple changes
+/// three times as much from 0 to 0.1 m as from there to 0.4 m.
 template <int S>
 class HeldFigures {
  public:
@@ -74,8 +87,13 @@ class HeldFigures {
   /// Returns false if a run's angle slips relative to the fit's, however small the step: the
   /// differences are then meaningless, and the fit invalid.
   [[nodiscard]] bool add_to(WheelFit& fit) const {
-    return add_places(fit) && add(&WheelModel<S>::delay_s, readings_.delay_s.std, fit) &&
-           add(&WheelModel<S>::rolling_radius_m, readings_.rolling_radius_m.std, fit);
+    if (!add_places(fit)) return false;
+    if (readings_.delay_s.std > 0.0) {
+      const auto change = change_by(&WheelModel<S>::delay_s, readings_.delay_s.std, 1.0);
+      if (!change) return false;
+      add(*change, fit);
+    }
+    return add_rolling_radius(fit);
   }
 
  private:
@@ -91,22 +109,57 @@ class HeldFigures {
         *prior.places += share * std_m * axes.vectors.col(i);
         return run_at(model(), prior);
       };
-      if (!add(moved, std::min(1.0, longest_step_m / std_m), fit)) return false;
+      const auto change = change_by(moved, std::min(1.0, longest_step_m / std_m));
+      if (!change) return false;
+      add(*change, fit);
     }
     return true;
   }
 
+  [[nodiscard]] bool add_rolling_radius(WheelFit& fit) const {
+    const Uncertain& rolling = readings_.rolling_radius_m;
+    if (!(rolling.std > 0.0)) return true;
+    const bool is_range =
+        readings_.shakes && !readings_.given_rolling_radius_m && !readings_.found_rolling_radius_m;
+    const double share = is_range ? std::numbers::sqrt3 : 1.0;
+    auto change = change_by(&WheelModel<S>::rolling_radius_m, rolling.std, share);
+    if (!change) return false;
+    if (is_range) {
+      const auto other = change_by(&WheelModel<S>::rolling_radius_m, rolling.std, -share);
+      if (!other) return false;
+      widen(*change, *other);
+    }
+    add(*change, fit);
+    return true;
+  }
+
   /// The lever arms are estimated anew with the changed parameter.
-  [[nodiscard]] bool add(double WheelModel<S>::* figure, double std, WheelFit& fit) const {
-    if (!(std > 0.0)) return true;
-    const auto moved = [&](double share) {
+  [[nodiscard]] std::optional<Run> change_by(double WheelModel<S>::* figure,
+                                             double std,
+                                             double share) const {
+    const auto moved = [&](double part) {
       auto other = model();
-      other.*figure += share * std;
+      other.*figure += part * std;
       WheelPrior prior = settled_.prior;
       *prior.places += places_of(other) - base_places_;
       return run_at(other, prior);
     };
-    return add(moved, 1.0, fit);
+    return change_by(moved, share);
+  }
+
+  /// A run that slips is tried again with a smaller share; nullopt if that slips, too.
+  template <class RunAt>
+  [[nodiscard]] std::optional<Run> change_by(const RunAt& moved, double share) const {
+    Run run = moved(share);
+    for (int again = 0; slips(run) && again < 3; ++again) run = moved(share *= 0.1);
+    if (slips(run)) return std::nullopt;
+    const double reach = 1.0 / share;
+    const auto difference = [&](double a, double b) { return reach * (a - b); };
+    for (std::vector<double> Run::* of : {&Run::angle_rad, &Run::speed_radps, &Run::accel_radps2})
+      std::ranges::transform(run.*of, base_.*of, (run.*of).begin(), difference);
+    run.constants = reach * (run.constants - base_.constants);
+    run.turns = reach * (run.turns - base_.turns);
+    return run;
   }
 
   [[nodiscard]] WheelModel<S> model() const {
@@ -123,13 +176,7 @@ class HeldFigures {
                                [](double a, double b) { return std::abs(a - b) < slip_rad; });
   }
 
-  /// A run that slips is tried again with a smaller share.
-  template <class RunAt>
-  [[nodiscard]] bool add(const RunAt& moved, double share, WheelFit& fit) const {
-    Run run = moved(share);
-    for (int again = 0; slips(run) && again < 3; ++again) run = moved(share *= 0.1);
-    if (slips(run)) return false;
-    const double reach = 1.0 / share;
+  void add(const Run& by, WheelFit& fit) const {
     WheelSeries& series = fit.series;
     std::size_t at = 0;
     for (std::size_t k = 0; k < series.time_s.size(); ++k) {
@@ -137,20 +184,16 @@ class HeldFigures {
       while (at + 2 < times.size() && times[at + 1] <= series.time_s[k]) ++at;
       const double part =
           std::clamp((series.time_s[k] - times[at]) / (times[at + 1] - times[at]), 0.0, 1.0);
-      const auto off = [&](std::vector<double> Run::* of) {
-        return reach * std::lerp((run.*of)[at] - (base_.*of)[at],
-                                 (run.*of)[at + 1] - (base_.*of)[at + 1], part);
+      const auto off = [&](const std::vector<double>& of) {
+        return std::lerp(of[at], of[at + 1], part);
       };
-      const double angle = off(&Run::angle_rad);
-      add_in_square(series.angle_std_rad[k], angle);
-      add_in_square(series.filtered_angle_std_rad[k], angle);
-      add_in_square(series.speed_std_radps[k], off(&Run::speed_radps));
-      add_in_square(series.accel_std_radps2[k], off(&Run::accel_radps2));
+      add_in_square(series.angle_std_rad[k], off(by.angle_rad));
+      add_in_square(series.filtered_angle_std_rad[k], off(by.angle_rad));
+      add_in_square(series.speed_std_radps[k], off(by.speed_radps));
+      add_in_square(series.accel_std_radps2[k], off(by.accel_radps2));
     }
-    const Eigen::VectorXd change = reach * (run.constants - base_.constants);
-    fit.constants_cov += change * change.transpose();
-    add_in_square(fit.turns.std, reach * (run.turns - base_.turns));
-    return true;
+    fit.constants_cov += by.constants * by.constants.transpose();
+    add_in_square(fit.turns.std, by.turns);
   }
 
   const WheelReadings& readings_;
