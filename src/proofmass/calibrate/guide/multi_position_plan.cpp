@@ -61,7 +61,15 @@ class MultiPositionPlan final : public GuidePlan {
   void draw(GuidePicture& picture) const override;
 
  private:
+  struct Nearest {
+    std::size_t pose;
+    double apart_rad;
+  };
+  /// Expects at least one pose.
+  [[nodiscard]] Nearest nearest_to(const Eigen::Vector3d& mean) const;
   void choose_next();
+  [[nodiscard]] std::optional<Eigen::Vector3d> up_of(const Eigen::Vector3d& mean) const;
+  [[nodiscard]] PlacedPose placed(std::size_t k) const;
   [[nodiscard]] std::optional<double> std_of_rest() const;
   [[nodiscard]] std::vector<Eigen::Vector3d> taken() const;
   [[nodiscard]] std::vector<GuideStep> suspects();
@@ -110,31 +118,32 @@ std::string MultiPositionPlan::prompt() const {
   return text;
 }
 
-std::optional<std::string> MultiPositionPlan::refusal(const Eigen::Vector3d& mean) const {
-  if (poses_.empty()) return std::nullopt;
-  double nearest = std::numeric_limits<double>::infinity();
-  std::size_t which = 0;
+MultiPositionPlan::Nearest MultiPositionPlan::nearest_to(const Eigen::Vector3d& mean) const {
+  Nearest found{0, std::numeric_limits<double>::infinity()};
   for (std::size_t k = 0; k < poses_.size(); ++k) {
     double apart = (mean - poses_[k].mean).norm();
     if (reader_) {
       const Eigen::Vector3d a = reader_->force(mean), b = reader_->force(poses_[k].mean);
       apart = std::atan2(a.cross(b).norm(), a.dot(b));
     }
-    if (apart > nearest) continue;
-    nearest = apart;
-    which = k;
+    if (apart <= found.apart_rad) found = {k, apart};
   }
-  if (!reader_) {
-    // A radian is half the largest possible distance; from the first two no more is known.
-    double widest = 0.0;
-    for (const Pose& one : poses_)
-      for (const Pose& other : poses_) widest = std::max(widest, (one.mean - other.mean).norm());
-    const double noise = std::sqrt(poses_.back().mean_covariance.trace());
-    nearest /= std::max(0.5 * widest, 100.0 * noise);
-  }
-  if (nearest > again_rad || which == repeated_) return std::nullopt;
-  if (which + 1 == poses_.size() && nearest < unmoved_rad) return "";
-  return fmt::format("That is pose {} again: turn it further.", which + 1);
+  if (reader_) return found;
+  // A radian is half the largest possible distance; from the first two no more is known.
+  double widest = 0.0;
+  for (const Pose& one : poses_)
+    for (const Pose& other : poses_) widest = std::max(widest, (one.mean - other.mean).norm());
+  const double noise = std::sqrt(poses_.back().mean_covariance.trace());
+  found.apart_rad /= std::max(0.5 * widest, 100.0 * noise);
+  return found;
+}
+
+std::optional<std::string> MultiPositionPlan::refusal(const Eigen::Vector3d& mean) const {
+  if (poses_.empty()) return std::nullopt;
+  const Nearest nearest = nearest_to(mean);
+  if (nearest.apart_rad > again_rad || nearest.pose == repeated_) return std::nullopt;
+  if (nearest.pose + 1 == poses_.size() && nearest.apart_rad < unmoved_rad) return "";
+  return fmt::format("That is pose {} again: turn it further.", nearest.pose + 1);
 }
 
 RestVerdict MultiPositionPlan::judge(const signal::RunningRests& rests) {
@@ -217,32 +226,33 @@ std::string MultiPositionPlan::off_words(const Eigen::Vector3d& mean) const {
   return fmt::format("{}; {:.0f}° from the next position", direction_words(up), off / rad_per_deg);
 }
 
+std::optional<Eigen::Vector3d> MultiPositionPlan::up_of(const Eigen::Vector3d& mean) const {
+  if (!reader_) return std::nullopt;
+  return reader_->force(mean).normalized();
+}
+
+PlacedPose MultiPositionPlan::placed(std::size_t k) const {
+  PlacedPose pose{.words = place_words(poses_[k].mean), .up = up_of(poses_[k].mean)};
+  if (!fit_ || !fit_->has_nine()) return pose;
+  // The fit's unit of force is g.
+  const PoseResidual& residual = fit_->poses()[k];
+  pose.suspect = residual.suspect;
+  pose.residual_g = residual.leave_one_out_mps2;
+  if (residual.leave_one_out_mps2 && residual.studentised && *residual.studentised != 0.0)
+    pose.residual_std_g = std::abs(*residual.leave_one_out_mps2 / *residual.studentised);
+  return pose;
+}
+
 void MultiPositionPlan::draw(GuidePicture& picture) const {
-  const auto up_of = [&](const Eigen::Vector3d& mean) -> std::optional<Eigen::Vector3d> {
-    if (!reader_) return std::nullopt;
-    return reader_->force(mean).normalized();
-  };
   if (picture.now) picture.now = up_of(*picture.now);
   if (!done_ && !next_words_.empty()) picture.next = next_up_;
-  const bool nine = fit_ && fit_->has_nine();
-  if (nine) {
+  if (fit_ && fit_->has_nine()) {
     picture.error_g = fit_->error_g();
     picture.figures = fit_->figures();
     picture.maps = maps_;
     if (picture.next && !repeated_) picture.next_gain = next_gain_;
   }
-  for (std::size_t k = 0; k < poses_.size(); ++k) {
-    PlacedPose pose{.words = place_words(poses_[k].mean), .up = up_of(poses_[k].mean)};
-    if (nine) {
-      // The fit's unit of force is g.
-      const PoseResidual& residual = fit_->poses()[k];
-      pose.suspect = residual.suspect;
-      pose.residual_g = residual.leave_one_out_mps2;
-      if (residual.leave_one_out_mps2 && residual.studentised && *residual.studentised != 0.0)
-        pose.residual_std_g = std::abs(*residual.leave_one_out_mps2 / *residual.studentised);
-    }
-    picture.poses.push_back(std::move(pose));
-  }
+  for (std::size_t k = 0; k < poses_.size(); ++k) picture.poses.push_back(placed(k));
 }
 
 std::vector<GuideStep> MultiPositionPlan::suspects() {

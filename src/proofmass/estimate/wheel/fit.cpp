@@ -121,6 +121,19 @@ void add_doubt(std::size_t k,
   doubt.predicted = predicted;
 }
 
+/// From the state after the last epoch.
+template <int S>
+void take_constants(const Gaussian<wheel::states(S)>& end,
+                    const Settled<S>& settled,
+                    WheelFit& fit) {
+  constexpr int count = wheel::standing(S);
+  fit.constants = end.mean.template tail<count>();
+  const auto by = settled.widened.asDiagonal();
+  const auto of_passes = end.cov.template bottomRightCorner<count, count>();
+  fit.constants_cov = by * of_passes * by;
+  fit.constants_widened = fit.constants_cov - of_passes;
+}
+
 /// Results of filter and smoother with the lever arms held at their estimates.
 template <int S>
 WheelFit smooth_at_places(const WheelReadings& readings,
@@ -170,12 +183,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
   filter_calibrated(model, settled.prior, {first_mean, end.cov}, fit.series);
   fit.track.lost = lost.share();
   fit.consistency = check.judge();
-  constexpr int count = wheel::standing(S);
-  fit.constants = end.mean.template tail<count>();
-  const auto by = settled.widened.asDiagonal();
-  const auto of_passes = end.cov.template bottomRightCorner<count, count>();
-  fit.constants_cov = by * of_passes * by;
-  fit.constants_widened = fit.constants_cov - of_passes;
+  take_constants(end, settled, fit);
   fit.turns = turns_in(model, end);
   const std::size_t half = size / 2;
   const double wider =

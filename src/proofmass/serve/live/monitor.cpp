@@ -154,20 +154,21 @@ void LiveMonitor::restart() {
   }
 }
 
-void LiveMonitor::add_noise(const Rows& rows) {
+/// Adds what is missing before a stamp, or starts anew.
+void LiveMonitor::go_on_to(double first_s) {
   constexpr double most_missing = 1000.0;
-  if (last_s_) {
-    const double missing = std::round((rows.stamps_s.front() - *last_s_) * rate_hz_) - 1.0;
-    const bool is_full = (*last_s_ - since_s_) * rate_hz_ >= most_noise_samples_;
-    if (missing < -0.5 || missing > most_missing || is_full)
-      restart();
-    else if (missing > 0.0) {
-      const std::vector<double> none(static_cast<std::size_t>(missing),
-                                     std::numeric_limits<double>::quiet_NaN());
-      for (Noise& one : noise_)
-        if (one.stream) one.stream->add(none);
-    }
-  }
+  if (!last_s_) return;
+  const double missing = std::round((first_s - *last_s_) * rate_hz_) - 1.0;
+  const bool is_full = (*last_s_ - since_s_) * rate_hz_ >= most_noise_samples_;
+  if (missing < -0.5 || missing > most_missing || is_full) return restart();
+  const std::vector<double> none(static_cast<std::size_t>(std::max(0.0, missing)),
+                                 std::numeric_limits<double>::quiet_NaN());
+  for (Noise& one : noise_)
+    if (one.stream && !none.empty()) one.stream->add(none);
+}
+
+void LiveMonitor::add_noise(const Rows& rows) {
+  go_on_to(rows.stamps_s.front());
   if (!last_s_) since_s_ = rows.stamps_s.front();
   last_s_ = rows.stamps_s.back();
   for (Noise& one : noise_) {

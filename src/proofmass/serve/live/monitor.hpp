@@ -53,6 +53,7 @@ class LiveMonitor {
   void write_audit();
   void find_rate(const Rows& rows);
   void restart();
+  void go_on_to(double first_s);
   void add_noise(const Rows& rows);
   void characterise_next();
   void hand_out(std::string line);
