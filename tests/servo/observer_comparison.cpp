@@ -8,6 +8,7 @@
 #include "contact_bank.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/units.hpp"
+#include "proofmass/servo/motor_model_test_support.hpp"
 #include "proofmass/simulate/gear_motor.hpp"
 
 namespace proofmass::servo_comparison {
@@ -21,18 +22,6 @@ constexpr std::array all{
     Scenario{"steps, backlash of 3°, load that turns freely", 0.052, 0.02},
     Scenario{"steps, a quarter of the noise", 0.012, 0.15, 0.003},
 };
-
-servo::MotorModel model_of(const simulate::GearMotorParameters& p) {
-  return {.resistance_ohm = p.resistance_ohm,
-          .inductance_h = p.inductance_h,
-          .torque_constant_nmpa = p.torque_constant_nmpa,
-          .inertia_kgm2 = p.motor_inertia_kgm2 + p.load_inertia_kgm2,
-          .viscous_nmspr = p.viscous_nmspr,
-          .coulomb_nm = p.coulomb_nm + p.load_coulomb_nm,
-          .breakaway_nm = p.breakaway_nm + p.load_coulomb_nm,
-          .stribeck_speed_radps = p.stribeck_speed_radps,
-          .backlash_rad = p.backlash_rad};
-}
 
 // The first seconds turn the wheel, so that the biases are known.
 constexpr double turning_s = 8.0, duration_s = 40.0;
@@ -67,7 +56,7 @@ void run(const Scenario& scenario, unsigned seed, Tally& smooth, Tally& bank) {
   drive.backlash_rad = scenario.backlash_rad;
   drive.load_coulomb_nm = scenario.load_coulomb_nm;
   simulate::GearMotor motor(drive);
-  const servo::MotorObserverOptions options{.model = model_of(drive),
+  const servo::MotorObserverOptions options{.model = servo::model_of(drive),
                                             .step_s = step_s,
                                             .accel_std_mps2 = scenario.noise_mps2,
                                             .bias_std_mps2 = bias_std_mps2,

@@ -14,7 +14,7 @@ struct Scenario {
 
 [[nodiscard]] std::span<const Scenario> scenarios();
 
-/// Of the samples while the gap is crossed, and 0.2 s longer.
+/// Errors of the load's angle from when the motor leaves a flank until 0.2 s after it meets one.
 struct Crossing {
   double rms_rad = 0.0;
   double coverage_95 = 0.0;

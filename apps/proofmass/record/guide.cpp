@@ -149,9 +149,9 @@ std::vector<std::string> RecordGuide::keys() {
   for (std::size_t end = 0; (end = typed_.find('\n')) != std::string::npos;) {
     const std::string word = typed_.substr(0, end);
     typed_.erase(0, end + 1);
-    ended_ |= word == "q" || word == "Q" || word == "quit";
+    ended_ |= word.find_first_of("qQ") != std::string::npos;
     if (ended_) return lines;
-    const bool again = word == "p" || word == "P" || word == "repeat";
+    const bool again = word.starts_with('p') || word.starts_with('P') || word == "repeat";
     for (const calibrate::GuideStep& step : again ? guide_->repeat() : guide_->skip())
       report(step, lines);
   }

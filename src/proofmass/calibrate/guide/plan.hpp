@@ -33,7 +33,7 @@ class GuidePlan {
   /// Message if the current rest ended after this time.
   [[nodiscard]] virtual std::string lost_words(double seconds) = 0;
   virtual void skip() = 0;
-  /// Requests the latest position that contradicts the others again; false if there is none.
+  /// Requests the latest outlying position once more; false if no position is an outlier.
   virtual bool repeat() { return false; }
   [[nodiscard]] virtual bool can_repeat() const { return false; }
   [[nodiscard]] virtual bool done() const = 0;

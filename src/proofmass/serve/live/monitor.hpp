@@ -26,8 +26,8 @@ namespace proofmass::serve {
 ///
 /// The noise is that of the accelerometers, or of the first channels if there are none, six at
 /// most. Missing samples are counted as missing; it starts anew after more than a thousand in a
-/// row, and after most_noise_samples: 46 minutes at 48 kHz, a day and a half at 1 kHz. Memory: that
-/// of NoiseStream for so many samples (10 MB a channel), of RunningAudit, and `queue_rows` rows.
+/// row, and after most_noise_samples: 46 minutes at 48 kHz, a day and a half at 1 kHz. Memory: 10
+/// MB per channel for NoiseStream, that of RunningAudit, and `queue_rows` rows.
 class LiveMonitor {
  public:
   static constexpr std::size_t default_noise_samples = std::size_t{1} << 27;
