@@ -135,10 +135,11 @@ double top_speed_radps(const WheelFit& fit) {
   return top;
 }
 
-/// Whether the final fit explains much less than its initial track: a variance that grows with the
-/// misfit can decouple a filter from the wheel.
-bool has_lost(const WheelFit& fit, const WheelTrack& begun) {
-  return fit.track.lost > 0.1 + 1.5 * begun.lost;
+/// Whether the final fit explains much less than an initial track, `begun_lost` of whose
+/// measurements are unexplained: a variance that grows with the misfit can decouple a filter from
+/// the wheel.
+bool has_lost(const WheelFit& fit, double begun_lost) {
+  return fit.track.lost > 0.1 + 1.5 * begun_lost;
 }
 
 Result<Single> fit_single(const WheelSensor& sensor,
@@ -159,17 +160,19 @@ Result<Single> fit_single(const WheelSensor& sensor,
     if (!along) return along.error();
     followed = along->track.lost <= not_a_wheel;
     if (followed) single.fit = fit_with_radius(single.readings, along->track, depth, options);
-    if (followed && !has_lost(single.fit, along->track)) {
+    if (followed && !has_lost(single.fit, along->track.lost)) {
       single.encoder = std::move(along).value();
       return single;
     }
   }
+  double least_lost = 1.0;
   for (std::size_t seek = 0; !options.encoder && seek < wheel_seeks; ++seek) {
     const WheelTrack track = find_track(single.readings, seek);
     if (track.lost > not_a_wheel) break;
     followed = true;
+    least_lost = std::min(least_lost, track.lost);
     single.fit = fit_with_radius(single.readings, track, depth, options);
-    if (top_speed_radps(single.fit) > fastest || has_lost(single.fit, track)) continue;
+    if (top_speed_radps(single.fit) > fastest || has_lost(single.fit, least_lost)) continue;
     // A fit that explains more but whose turns are uncertain outweighs a certain one.
     const bool explains_less = unsure && unsure->fit.track.lost < single.fit.track.lost;
     if (single.fit.doubts.empty() &&
@@ -181,9 +184,9 @@ Result<Single> fit_single(const WheelSensor& sensor,
   if (followed)
     return Error{Errc::not_observable,
                  sensor.name +
-                     ": the angle was lost: the wheel turns by more than an "
-                     "eighth of a turn between samples; record at a higher "
-                     "rate, or analyse a part of the recording",
+                     ": the angle was lost: the wheel turns by more than an eighth of a turn "
+                     "between samples, or vibrates too strongly; record at a higher rate, or "
+                     "analyse a part of the recording",
                  {Advice{"from"}, Advice{"to"}}};
   return Error{Errc::not_observable,
                sensor.name +

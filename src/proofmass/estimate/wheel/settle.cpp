@@ -53,11 +53,27 @@ struct RippleFit {
   }
 };
 
+/// The hub's acceleration ρ α tilts the apparent gravity: to a model with another rolling radius, a
+/// ripple c of order n appears as c (1 + n² ω² ρ/g). Adapts the path's ripple from one radius to
+/// another. A ripple found with ρ = 0 may be ten times too large, and its acceleration, in a model
+/// with ρ > 0, further from the measurements than a filter linearised about it can return.
+template <int S>
+void adapt_ripple(double from_m, double to_m, const WheelReadings& readings, WheelPath& path) {
+  double square_sum = 0.0;
+  for (const Mat<wheel::moving>& at : path.moving) square_sum += square(at(wheel::speed));
+  const double mean_square = square_sum / static_cast<double>(path.moving.size());
+  for (std::size_t i = 0; i < readings.orders.size(); ++i) {
+    const double per_m = square(readings.orders[i]) * mean_square / readings.gravity_mps2;
+    const int at = wheel::ripple(S) - wheel::first_of(0) + 2 * static_cast<int>(i);
+    path.standing.segment<2>(at) *= (1.0 + per_m * from_m) / (1.0 + per_m * to_m);
+  }
+}
+
 /// One iteration: the measurements' variance, the motion noise and the sensors' lever arms, all
-/// about the current path.
+/// about the current path, whose ripple is adapted to the rolling radius.
 template <int S>
 Settled<S> settle(WheelReadings& readings,
-                  const WheelTrack& track,
+                  WheelTrack& track,
                   const PlacesPrior& belief,
                   double tuning_factor) {
   auto model = held_model<S>(readings, track.noise, track.path);
@@ -70,6 +86,7 @@ Settled<S> settle(WheelReadings& readings,
   if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
     readings.shakes = false;
   assume_rolling_radius(readings);
+  adapt_ripple<S>(model.rolling_radius_m, readings.rolling_radius_m.value, readings, track.path);
   model.rolling_radius_m = readings.rolling_radius_m.value;
   const Excerpt<S> excerpt = liveliest(model, prior);
   model.noise = tune_noise(model, excerpt, tuning_factor).noise;
