@@ -43,20 +43,46 @@ TEST_P(WheelCoverage, IsAsStated) {
   }
 }
 
+struct Estimated {
+  wheel_world::Recorded recorded;
+  Result<estimate::WheelSolution> said;
+};
+
+Estimated estimated(std::string_view name, std::uint64_t seed) {
+  const auto scenario = std::ranges::find(wheel_world::scenarios(), name, &Scenario::name);
+  const wheel_world::World world = scenario->draw(seed);
+  Estimated out{wheel_world::record(world, seed), {Error{}}};
+  out.said = estimate::estimate_wheel(out.recorded.sensors, scenario->options(world));
+  return out;
+}
+
 // The hub of a wheel that is pushed by hand accelerates within a turn, which resembles a skew.
 TEST(PushedWheel, HasNoSkewWithoutAnotherMeasurementOfItsMotion) {
-  const auto pushed =
-      std::ranges::find(wheel_world::scenarios(), std::string_view("pushed"), &Scenario::name);
-  ASSERT_NE(pushed, wheel_world::scenarios().end());
-  constexpr std::uint64_t seed = 5001;
-  const wheel_world::World world = pushed->draw(seed);
-  const auto said =
-      estimate::estimate_wheel(wheel_world::record(world, seed).sensors, pushed->options(world));
-  ASSERT_TRUE(said);
-  EXPECT_FALSE(said->sensors.front().skew_rad);
-  EXPECT_TRUE(std::ranges::any_of(said->not_observable, [](const std::string& sentence) {
+  const Estimated found = estimated("pushed", 5001);
+  ASSERT_TRUE(found.said);
+  EXPECT_FALSE(found.said->sensors.front().skew_rad);
+  EXPECT_TRUE(std::ranges::any_of(found.said->not_observable, [](const std::string& sentence) {
     return sentence.find("acceleration of the vehicle") != std::string::npos;
   }));
+}
+
+// Fitted without the rolling radius, the ripple was ten times too large, and the fit with it let go
+// of the wheel: -2.45 +- 0.04 turns.
+TEST(RipplingWheel, IsFollowedOnAVehicle) {
+  const Estimated found = estimated("rest-to-rest-10", 1005);
+  ASSERT_TRUE(found.said && found.said->turns);
+  const Uncertain& turns = *found.said->turns;
+  EXPECT_LT(std::abs(turns.value - found.recorded.truth.turns), 5.0 * turns.std);
+}
+
+// The filter lost the phase for some seconds on a rough road: three turns fewer, +- 0.03.
+TEST(LostWheel, HasNoNumberOfTurns) {
+  for (const std::uint64_t seed : {5026U, 5090U}) {
+    const Estimated found = estimated("on-the-road", seed);
+    ASSERT_TRUE(found.said);
+    const auto& turns = found.said->turns;
+    EXPECT_TRUE(!turns || std::abs(turns->value - found.recorded.truth.turns) < 5.0 * turns->std);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios,

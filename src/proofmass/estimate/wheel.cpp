@@ -228,7 +228,7 @@ void judge_turns(const WheelFit& fit, const std::string& where, WheelSolution& s
   solution.smoother.note = "the angle was lost " + where;
   solution.notes.push_back(
       {Severity::bad,
-       "turns: measurements are missing or corrupt " + where +
+       "turns: measurements are missing, corrupt or too disturbed to show gravity " + where +
            ", for so long that the angle is uncertain by more than 45 degrees: the number of turns "
            "is ambiguous"});
 }

@@ -1,5 +1,8 @@
 #include "proofmass/estimate/wheel/fit.hpp"
 
+#include <cmath>
+#include <limits>
+
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
@@ -121,6 +124,52 @@ void add_doubt(std::size_t k,
   doubt.predicted = predicted;
 }
 
+/// Whether the measurements show gravity where the filter predicts it, by windows of a second:
+/// their component along the predicted direction is g on average, whatever the vibration, and
+/// nearly 0 if the filter has lost the phase. Then the innovations count as noise, so that neither
+/// they nor the predicted covariance show the loss.
+template <int S>
+class GravityShown {
+ public:
+  GravityShown(const WheelReadings& readings, std::vector<WheelDoubt>& doubts)
+      : readings_(readings), doubts_(doubts) {}
+
+  void add(const WheelModel<S>& model, std::size_t k, const StepOf<WheelModel<S>>& step) {
+    constexpr double window_s = 1.0, fewest = 20.0, shown = 0.7;
+    const auto& mean = step.filtered.mean;
+    std::size_t next = 0;
+    for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
+      if (!model.has_readings(s, k)) continue;
+      const double phase = s > 0 ? model.phase_rad + mean(wheel::phase) : 0.0;
+      const double phi = mean(wheel::angle) + phase;
+      along_mps2_ += std::sin(phi) * step.updates[next].innovation +
+                     std::cos(phi) * step.updates[next + 1].innovation;
+      count_ += 1.0;
+      next += model.has_speed(s, k) ? 3 : 2;
+    }
+    if (readings_.time_s[k] - readings_.time_s[first_] < window_s) return;
+    const double share = 1.0 + along_mps2_ / count_ / model.gravity_mps2;
+    if (first_ > 0 && count_ >= fewest && share < shown) doubt(k);
+    first_ = k + 1;
+    along_mps2_ = count_ = 0.0;
+  }
+
+ private:
+  void doubt(std::size_t last) {
+    Gaussian<wheel::moving> anywhere{};
+    anywhere.cov(wheel::angle, wheel::angle) = std::numeric_limits<double>::infinity();
+    if (!doubts_.empty() && doubts_.back().last + 1 >= first_)
+      doubts_.back() = {doubts_.back().first, last, last, anywhere};
+    else
+      doubts_.push_back({first_, last, last, anywhere});
+  }
+
+  const WheelReadings& readings_;
+  std::vector<WheelDoubt>& doubts_;
+  std::size_t first_ = 0;
+  double along_mps2_ = 0.0, count_ = 0.0;
+};
+
 /// From the state after the last epoch.
 template <int S>
 void take_constants(const Gaussian<wheel::states(S)>& end,
@@ -154,6 +203,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
                           .gate = wheel_gate.limit});
   AngleColour<S> colour;
   LostShare lost(readings.gravity_mps2);
+  GravityShown<S> gravity(readings, fit.doubts);
   const auto report = [&](std::string_view stage, std::size_t done) {
     if (progress && done % 65536 == 0)
       progress(stage, static_cast<double>(done) / static_cast<double>(size));
@@ -172,6 +222,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
         end = step.filtered;
         colour.add(step);
         lost.add(step);
+        gravity.add(model, k, step);
         note_forward(model, k, step, check, fit);
         report("filter", k);
       },

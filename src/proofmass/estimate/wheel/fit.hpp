@@ -88,8 +88,8 @@ struct WheelTrack {
 [[nodiscard]] WheelTrack find_track(WheelReadings& readings, std::size_t first = 0);
 inline constexpr std::size_t wheel_seeks = 4;
 
-/// An interval in which the predicted angle is less certain than lost_prediction_rad: the first and
-/// the last such epoch.
+/// An interval in which the predicted angle is less certain than lost_prediction_rad, or in which
+/// the measurements do not show gravity where it is predicted: the first and the last such epoch.
 struct WheelDoubt {
   std::size_t first = 0, last = 0;
   std::size_t widest = 0;               ///< where the prediction is least certain
