@@ -5,6 +5,7 @@
 
 #include "proofmass/characterise/allan/averaging_times.hpp"
 #include "proofmass/characterise/noise_fit.hpp"
+#include "proofmass/core/in_parallel.hpp"
 
 namespace proofmass::characterise {
 namespace {
@@ -85,12 +86,20 @@ void NoiseAccumulator::exchange(StateBytes& bytes) {
 }
 
 void NoiseAccumulator::add(View<double> samples) {
-  for (std::size_t from = 0; from < samples.size(); from += chunk) {
-    const View<double> part = samples.subspan(from, std::min(chunk, samples.size() - from));
-    if (!factors_.empty()) differences_.add(part);
-    spectrum_.add(part);
-    slow_.add(part);
-  }
+  const auto in_chunks = [&](const auto& add_chunk) {
+    for (std::size_t from = 0; from < samples.size(); from += chunk)
+      add_chunk(samples.subspan(from, std::min(chunk, samples.size() - from)));
+  };
+  run_tasks(samples.size(), {[&] {
+                               if (!factors_.empty())
+                                 in_chunks([&](View<double> part) { differences_.add(part); });
+                             },
+                             [&] {
+                               in_chunks([&](View<double> part) {
+                                 spectrum_.add(part);
+                                 slow_.add(part);
+                               });
+                             }});
   samples_ += samples.size();
 }
 

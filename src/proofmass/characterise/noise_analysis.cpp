@@ -11,6 +11,7 @@
 #include "proofmass/characterise/noise/parts.hpp"
 #include "proofmass/characterise/noise_accumulator.hpp"
 #include "proofmass/characterise/record_overview.hpp"
+#include "proofmass/core/in_parallel.hpp"
 
 namespace proofmass::characterise {
 namespace {
@@ -65,22 +66,35 @@ Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& opt
       changed[k] = (series[k + 1] - series[k]) * options.rate_hz;
     series = changed;
   }
-  RecordOverview raw;
-  raw.add(series);
+  View<double> used = series;
+  RecordOverview raw, kept;
+  std::vector<signal::Event> events;
+  NoiseAccumulator accumulator(options, series.size());
+  StationarityTest differences;
+  const auto look = [&] { raw.add(series); };
+  const auto find_events = [&] {
+    events = signal::find_events(series, {.rate_hz = options.rate_hz});
+  };
+  const auto accumulate = [&] { accumulator.add(used); };
+  const auto follow_level = [&] { differences.add(used); };
+  if (options.progress) options.progress("outliers and steps", 0.0);
+  if (options.exclude_events)
+    run_tasks(series.size(), {find_events, look});
+  else
+    run_tasks(series.size(), {accumulate, find_events, follow_level, look});
   if (Status varies = raw.check_spread(options.lsb); !varies) return varies.error();
   if (Status free = raw.check_rails(options.lsb); !free) return free.error();
-  View<double> used = series;
-  if (options.progress) options.progress("outliers and steps", 0.0);
-  std::vector<signal::Event> events = signal::find_events(series, {.rate_hz = options.rate_hz});
-  if (options.exclude_events && !events.empty()) {
-    apart = without_events(series, events, options.rate_hz);
-    used = apart;
-  }
   if (options.progress) options.progress("spectrum and deviations", 0.4);
-  NoiseAccumulator accumulator(options, series.size());
-  accumulator.add(used);
+  if (options.exclude_events) {
+    if (!events.empty()) {
+      apart = without_events(series, events, options.rate_hz);
+      used = apart;
+    }
+    run_tasks(used.size(), {accumulate, follow_level, [&] { kept.add(used); }});
+  }
   NoiseAnalysis analysis = accumulator.finish_spectrum();
-  analysis.stationarity = test_stationarity(used, options.rate_hz, analysis.lines.lines);
+  analysis.stationarity =
+      test_stationarity(differences, used, options.rate_hz, analysis.lines.lines);
   if (!analysis.stationarity.stationary) {
     analysis.parts = noise_of_parts(used, options);
     widen_to_parts(analysis.parts, analysis.model);
@@ -93,10 +107,9 @@ Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& opt
   if (variances.factors.empty()) return no_time_fits(options, series.size());
   analysis.deviation = deviation_curve(variances, analysis.model, used, options);
   analysis.lsb = options.lsb;
-  RecordOverview kept;
-  kept.add(used);
-  analysis.mean = kept.mean();
-  analysis.missing = kept.missing() - (used.size() - series.size());
+  const RecordOverview& counted = options.exclude_events ? kept : raw;
+  analysis.mean = counted.mean();
+  analysis.missing = counted.missing() - (used.size() - series.size());
   analysis.events = std::move(events);
   note_stationarity(analysis);
   note_missing(analysis, variances.left_out);

@@ -76,23 +76,6 @@ std::size_t length_of_spans(std::size_t total, std::size_t octave) {
   return digits > octave + 1 + log2_most ? std::size_t{1} << (digits - octave - 1 - log2_most) : 1;
 }
 
-Moments sum_of(const Moments& a, const Moments& b) {
-  if (a.count == 0 || b.count == 0) {
-    Moments only = a.count == 0 ? b : a;
-    only.nonfinite = a.nonfinite + b.nonfinite;
-    return only;
-  }
-  // Source: T. F. Chan, G. H. Golub, R. J. LeVeque, American Statistician 37 (1983) 242.
-  const auto of_a = static_cast<double>(a.count), of_b = static_cast<double>(b.count);
-  const double apart = b.mean - a.mean, all = of_a + of_b;
-  return {.count = a.count + b.count,
-          .nonfinite = a.nonfinite + b.nonfinite,
-          .mean = a.mean + apart * (of_b / all),
-          .squares = a.squares + b.squares + apart * apart * (of_a * of_b / all),
-          .min = std::min(a.min, b.min),
-          .max = std::max(a.max, b.max)};
-}
-
 using Band = StationarityTest::Band;
 
 struct Parts {
@@ -218,17 +201,26 @@ void EqualSpans::exchange(StateBytes& bytes, std::size_t first, std::size_t valu
   if (sums_.size() != (end + length_ - 1) / length_ || counts_.size() != sums_.size()) bytes.fail();
 }
 
-void EqualSpans::add(double value) {
-  if (taken_ == 0) {
-    if (sums_.size() == most && !is_fixed_) halve();
-    sums_.push_back(0.0);
-    counts_.push_back(0.0);
+void EqualSpans::add(View<double> values) {
+  while (!values.empty()) {
+    if (taken_ == 0) {
+      if (sums_.size() == most && !is_fixed_) halve();
+      sums_.push_back(0.0);
+      counts_.push_back(0.0);
+    }
+    const std::size_t count = std::min(length_ - taken_, values.size());
+    double sum = sums_.back(), present = counts_.back();
+    for (const double value : values.first(count)) {
+      if (std::isnan(value)) continue;
+      sum += value;
+      present += 1.0;
+    }
+    sums_.back() = sum;
+    counts_.back() = present;
+    taken_ += count;
+    if (taken_ == length_) taken_ = 0;
+    values = values.subspan(count);
   }
-  if (!std::isnan(value)) {
-    sums_.back() += value;
-    counts_.back() += 1.0;
-  }
-  taken_ = (taken_ + 1) % length_;
 }
 
 // A last span without a partner is continued.
@@ -257,23 +249,43 @@ std::vector<double> EqualSpans::means() const {
   return means;
 }
 
-// The mean of the pair, if this value completes one.
-std::optional<double> StationarityTest::Octave::add(double value) {
-  if (wants_head && !head) {
-    head = value;
-    return std::nullopt;
+void StationarityTest::Octave::add(View<double> values,
+                                   std::vector<double>& means,
+                                   std::vector<double>& buffer) {
+  means.clear();
+  if (wants_head && !head && !values.empty()) {
+    head = values.front();
+    values = values.subspan(1);
   }
-  if (!first_of_pair) {
-    first_of_pair = value;
-    return std::nullopt;
+  if (values.empty()) return;
+  std::vector<double>& differences = buffer;
+  differences.clear();
+  const auto take = [&](double first, double second) {
+    differences.push_back(second - first);
+    means.push_back(0.5 * (second + first));
+  };
+  if (first_of_pair) {
+    take(*first_of_pair, values.front());
+    first_of_pair.reset();
+    values = values.subspan(1);
   }
-  const double difference = value - *first_of_pair, mean = 0.5 * (value + *first_of_pair);
-  first_of_pair.reset();
-  ++coefficients;
-  roots.add(std::sqrt(std::abs(difference)));
-  squares.add(square(difference));
-  if (beginning.size() < room) beginning.push_back(difference);
-  return mean;
+  for (std::size_t k = 0; k + 1 < values.size(); k += 2) take(values[k], values[k + 1]);
+  if (values.size() % 2 == 1) first_of_pair = values.back();
+  coefficients += differences.size();
+  if (beginning.size() < room) {
+    const std::size_t wanted = std::min(differences.size(), room - beginning.size());
+    beginning.insert(beginning.end(), differences.begin(),
+                     differences.begin() + static_cast<std::ptrdiff_t>(wanted));
+  }
+  for (double& difference : differences) {
+    const double squared = square(difference);
+    if (std::isfinite(squared)) {
+      squares += squared;
+      ++finite;
+    }
+    difference = std::sqrt(std::abs(difference));
+  }
+  roots.add(View<double>(differences));
 }
 
 void StationarityTest::Octave::append(const Octave& part) {
@@ -281,7 +293,8 @@ void StationarityTest::Octave::append(const Octave& part) {
     PM_EXPECTS(!first_of_pair);
     coefficients += part.coefficients;
     roots.append(part.roots);
-    squares = sum_of(squares, part.squares);
+    squares += part.squares;
+    finite += part.finite;
     for (const double difference : part.beginning)
       if (beginning.size() < room) beginning.push_back(difference);
   }
@@ -295,12 +308,12 @@ void StationarityTest::Octave::exchange(StateBytes& bytes,
   bytes(head);
   coefficients = (means - (wants_head ? 1 : 0)) / 2;
   roots.exchange(bytes, first_pair, coefficients);
-  for (std::size_t* count : {&squares.count, &squares.nonfinite}) bytes(*count);
-  for (double* value : {&squares.mean, &squares.squares, &squares.min, &squares.max}) bytes(*value);
+  bytes(squares);
+  bytes(finite);
   bytes(beginning);
   const bool is_odd = (means - (wants_head ? 1 : 0)) % 2 == 1;
   if (head.has_value() != wants_head || first_of_pair.has_value() != is_odd ||
-      squares.count + squares.nonfinite != coefficients ||
+      finite > coefficients ||
       beginning.size() != std::min(room, coefficients))
     bytes.fail();
 }
@@ -327,15 +340,19 @@ void StationarityTest::append(const StationarityTest& part) {
   PM_EXPECTS(total_ > 0 && part.total_ == total_ && part.first_ == first_ + samples_);
   samples_ += part.samples_;
   std::optional<double> mean;
+  std::vector<double> made, buffer;
   for (std::size_t k = 0; mean || k < part.octaves_.size(); ++k) {
     if (k == octaves_.size()) octaves_.push_back(new_octave());
     std::optional<double> next;
+    const auto add = [&](double value) {
+      octaves_[k].add(View<double>(&value, 1), made, buffer);
+      if (!made.empty()) next = made.front();
+    };
     // The mean that spans the border, and the one behind it that waits for its partner.
-    if (mean) next = octaves_[k].add(*mean);
+    if (mean) add(*mean);
     if (k < part.octaves_.size()) {
       const Octave& other = part.octaves_[k];
-      if (other.head)
-        if (const auto made = octaves_[k].add(*other.head)) next = made;
+      if (other.head) add(*other.head);
       octaves_[k].append(other);
     }
     mean = next;
@@ -357,12 +374,17 @@ void StationarityTest::exchange(StateBytes& bytes) {
 }
 
 void StationarityTest::add(View<double> samples) {
+  // Short enough for the means of all octaves to stay in the cache.
+  constexpr std::size_t piece = 1024;
+  std::vector<double> means, above, buffer;
   samples_ += samples.size();
-  for (const double sample : samples) {
-    std::optional<double> mean = sample;
-    for (std::size_t k = 0; mean; ++k) {
+  for (std::size_t from = 0; from < samples.size(); from += piece) {
+    View<double> values = samples.subspan(from, std::min(piece, samples.size() - from));
+    for (std::size_t k = 0; !values.empty(); ++k) {
       if (k == octaves_.size()) octaves_.push_back(new_octave());
-      mean = octaves_[k].add(*mean);
+      octaves_[k].add(values, above, buffer);
+      std::swap(means, above);
+      values = means;
     }
   }
 }
@@ -373,7 +395,9 @@ std::vector<StationarityTest::Band> StationarityTest::bands(
   double averaging_s = 1.0 / rate_hz;
   for (const Octave& octave : octaves_) {
     if (octave.coefficients < fewest_coefficients) break;
-    if (!belongs_to_lines(averaging_s, 0.5 * octave.squares.mean, lines))
+    const double mean_of_squares =
+        octave.finite > 0 ? octave.squares / static_cast<double>(octave.finite) : 0.0;
+    if (!belongs_to_lines(averaging_s, mean_of_squares / 2.0, lines))
       bands.push_back({averaging_s, std::nullopt,
                        independent_means(octave.roots, excess_correlation(octave.beginning))});
     averaging_s *= 2.0;
@@ -386,11 +410,10 @@ Stationarity StationarityTest::finish(double rate_hz,
   return judged(bands(rate_hz, lines));
 }
 
-Stationarity test_stationarity(View<double> series,
+Stationarity test_stationarity(const StationarityTest& differences,
+                               View<double> series,
                                double rate_hz,
                                const std::vector<signal::SpectralLine>& lines) {
-  StationarityTest differences;
-  differences.add(series);
   std::vector<Band> bands = differences.bands(rate_hz, lines);
   for (const signal::SpectralLine& line : lines)
     if (auto band = line_band(series, rate_hz, line.frequency_hz))

@@ -35,7 +35,8 @@ class EqualSpans {
   /// whole, the first and the last of which append() completes.
   EqualSpans(std::size_t first, std::size_t length);
 
-  void add(double value);
+  void add(double value) { add(View<double>(&value, 1)); }
+  void add(View<double> values);
   /// Adds the part that follows.
   void append(const EqualSpans& part);
   /// The spans of a whole series, which were of fixed length, as if they had grown with it.
@@ -110,14 +111,16 @@ class StationarityTest {
     std::optional<double> first_of_pair;
     std::size_t coefficients = 0;
     EqualSpans roots;
-    Moments squares;
+    double squares = 0.0;           ///< Σ d², where finite
+    std::size_t finite = 0;         ///< number of these
     std::vector<double> beginning;  ///< of the differences, for their correlation
 
     bool wants_head = false;  ///< the partner of the first mean is before this part
     std::optional<double> head;
     std::size_t room = 0;  ///< of `beginning`
 
-    [[nodiscard]] std::optional<double> add(double value);
+    /// `means`: those of the pairs that these values complete. `buffer` is overwritten.
+    void add(View<double> values, std::vector<double>& means, std::vector<double>& buffer);
     void append(const Octave& part);
     /// means: of the octave in this part.
     void exchange(StateBytes& bytes, std::size_t first_pair, std::size_t means);
@@ -130,9 +133,10 @@ class StationarityTest {
   std::size_t first_ = 0, total_ = 0;  ///< total_ = 0: not a part
 };
 
-/// StationarityTest of a whole series, plus the amplitude of every line: of the roots of the
-/// Fourier coefficients of blocks at its frequency.
-[[nodiscard]] Stationarity test_stationarity(View<double> series,
+/// The test of a whole series, plus the amplitude of every line: of the roots of the Fourier
+/// coefficients of blocks at its frequency.
+[[nodiscard]] Stationarity test_stationarity(const StationarityTest& differences,
+                                             View<double> series,
                                              double rate_hz,
                                              const std::vector<signal::SpectralLine>& lines);
 

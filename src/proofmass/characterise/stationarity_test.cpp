@@ -18,10 +18,16 @@ using test::Series;
 constexpr double rate_hz = 100.0;
 constexpr std::size_t samples = 20'000;
 
+Stationarity tested(const Series& series, double at_rate_hz = rate_hz) {
+  StationarityTest differences;
+  differences.add(series);
+  return test_stationarity(differences, series, at_rate_hz, {});
+}
+
 int alarms(unsigned records, const std::function<Series(unsigned)>& draw) {
   int found = 0;
   for (unsigned seed = 0; seed < records; ++seed)
-    found += test_stationarity(draw(10 * seed + 1), rate_hz, {}).stationary ? 0 : 1;
+    found += tested(draw(10 * seed + 1)).stationary ? 0 : 1;
   return found;
 }
 
@@ -66,7 +72,7 @@ TEST(Stationarity, InPiecesIsThatOfTheWhole) {
   StationarityTest pieces;
   for (std::size_t from = 0, size = 1; from < y.size(); from += size, size = size * 7 % 4093 + 1)
     pieces.add(View<double>(y).subspan(from, std::min(size, y.size() - from)));
-  const Stationarity found = pieces.finish(rate_hz, {}), whole = test_stationarity(y, rate_hz, {});
+  const Stationarity found = pieces.finish(rate_hz, {}), whole = tested(y);
   EXPECT_FALSE(found.stationary);
   EXPECT_EQ(found.p, whole.p);
   EXPECT_EQ(found.relative_level, whole.relative_level);
@@ -169,8 +175,8 @@ TEST(Stationarity, OfAChangeTheIntervalSpansBothLevels) {
 }
 
 TEST(Stationarity, IsNotTestedOfAFewSamples) {
-  EXPECT_FALSE(test_stationarity(test::normals(40, 1), 1.0, {}).tested);
-  EXPECT_TRUE(test_stationarity(test::normals(400, 1), 1.0, {}).tested);
+  EXPECT_FALSE(tested(test::normals(40, 1), 1.0).tested);
+  EXPECT_TRUE(tested(test::normals(400, 1), 1.0).tested);
 }
 
 }  // namespace

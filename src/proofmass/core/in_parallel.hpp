@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 
 #include "proofmass/core/progress.hpp"
 
@@ -13,5 +14,9 @@ namespace proofmass {
 void in_parallel(std::size_t parts,
                  const Progress& shown,
                  const std::function<void(std::size_t, Progress)>& work);
+
+/// Calls independent tasks, which together process `samples`: in parallel if these are enough to
+/// pay for the threads.
+void run_tasks(std::size_t samples, std::initializer_list<std::function<void()>> tasks);
 
 }  // namespace proofmass

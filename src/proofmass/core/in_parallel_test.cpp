@@ -38,5 +38,13 @@ TEST(InParallel, DoesTheOthersAndThrowsWhatTheFirstOfTheFailedThrew) {
   EXPECT_EQ(done, std::vector<int>(10, 1));
 }
 
+TEST(RunTasks, DoesEachOnceForFewSamplesAndForMany) {
+  for (const std::size_t samples : {std::size_t{10}, std::size_t{1} << 20}) {
+    std::vector<int> done(3, 0);
+    run_tasks(samples, {[&] { ++done[0]; }, [&] { ++done[1]; }, [&] { ++done[2]; }});
+    EXPECT_EQ(done, std::vector<int>(3, 1));
+  }
+}
+
 }  // namespace
 }  // namespace proofmass::in_parallel_test
