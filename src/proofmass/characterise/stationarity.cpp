@@ -313,8 +313,7 @@ void StationarityTest::Octave::exchange(StateBytes& bytes,
   bytes(beginning);
   const bool is_odd = (means - (wants_head ? 1 : 0)) % 2 == 1;
   if (head.has_value() != wants_head || first_of_pair.has_value() != is_odd ||
-      finite > coefficients ||
-      beginning.size() != std::min(room, coefficients))
+      finite > coefficients || beginning.size() != std::min(room, coefficients))
     bytes.fail();
 }
 
