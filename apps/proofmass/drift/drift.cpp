@@ -76,7 +76,7 @@ RestOptions rest_options(const DriftCommand& command) {
           .temperature = left ? "" : command.temperature,
           .find_temperature = command.temperature.empty(),
           .for_sensor_file = !command.update_sensor.empty(),
-          .may_drift = true};
+          .leave_rest = true};
 }
 
 // Time between power-on and the first analysed sample.
@@ -180,7 +180,7 @@ void find_motion(double start_s,
         rest.series[k] -= analysis->fit.curve.value(t_s);
       }
     }
-    find_share_at_rest(start_s, recording.channels);
+    find_share_at_rest(start_s, pointers_to(recording.channels));
     for (auto found = first; found != channel; ++found) found->shown.rest = found->rest->rest;
   }
 }
@@ -245,7 +245,7 @@ void run_drift(const DriftCommand& command) {
   });
   report.runs = compare_recordings(recordings, report.since_switch_on_s,
                                    progress_bar(command.output), report.notes);
-  find_motion(std::max(0.0, command.input.from_s.value_or(0.0)), recordings, channels);
+  find_motion(first_used_s(command.input), recordings, channels);
   if (!command.update_sensor.empty()) {
     without_interruption([&] { update_drift(command.update_sensor, channels, report.notes); });
   }

@@ -126,15 +126,14 @@ RestChannel prepared(Source& source, std::size_t k, bool is_phase) {
     const double scale = !calibrated ? audit.unit.to_si : before > 0.0 ? after / before : 0.0;
     if (scale > 0.0) out.lsb = *audit.lsb * scale;
   }
-  out.series = signal::on_even_grid(channel.values, source.grid);
-  std::vector<double>().swap(channel.values);
+  out.series = signal::on_even_grid(std::move(channel.values), source.grid);
   return out;
 }
 
 RestTemperature prepared_temperature(Source& source) {
   Channel& channel = source.recording.channels[*source.temperature];
   to_si(channel);
-  return {channel.name, channel.unit, signal::on_even_grid(channel.values, source.grid)};
+  return {channel.name, channel.unit, signal::on_even_grid(std::move(channel.values), source.grid)};
 }
 
 void calibrate_chosen(Source& source, const InputFlags& flags, std::vector<Note>& notes) {
@@ -173,7 +172,17 @@ report::RestShare share_of(const signal::RestSearch& search,
 
 }  // namespace
 
-void find_share_at_rest(double start_s, std::vector<RestChannel>& channels) {
+double first_used_s(const InputFlags& input) {
+  return std::max(0.0, input.from_s.value_or(0.0));
+}
+
+std::vector<RestChannel*> pointers_to(std::vector<RestChannel>& channels) {
+  std::vector<RestChannel*> all;
+  for (RestChannel& channel : channels) all.push_back(&channel);
+  return all;
+}
+
+void find_share_at_rest(double start_s, const std::vector<RestChannel*>& channels) {
   constexpr std::size_t most_axes = 3;
   // fewer samples do not determine the noise at rest
   constexpr std::size_t fewest_samples = 500;
@@ -181,9 +190,11 @@ void find_share_at_rest(double start_s, std::vector<RestChannel>& channels) {
     std::vector<View<double>> axes;
     std::vector<RestChannel*> group;
     for (; k < channels.size() && group.size() < most_axes; ++k) {
-      RestChannel& channel = channels[k];
+      RestChannel& channel = *channels[k];
       if (!shows_motion(channel) || channel.series.size() < fewest_samples) continue;
-      if (!group.empty() && channel.unit.quantity != group.front()->unit.quantity) break;
+      if (!group.empty() && (channel.file != group.front()->file ||
+                             channel.unit.quantity != group.front()->unit.quantity))
+        break;
       axes.emplace_back(channel.series);
       group.push_back(&channel);
     }
@@ -248,8 +259,8 @@ RestRecording rest_recording(Recording recording,
     if (options.for_sensor_file) expect_axis(channel, options);
     out.channels.push_back(std::move(channel));
   }
-  if (!options.is_phase && !options.may_drift)
-    find_share_at_rest(std::max(0.0, options.input.from_s.value_or(0.0)), out.channels);
+  if (!options.is_phase && !options.leave_rest)
+    find_share_at_rest(first_used_s(options.input), pointers_to(out.channels));
   if (source.temperature) out.temperature = prepared_temperature(source);
   return out;
 }

@@ -26,7 +26,7 @@ struct RestOptions {
                                        ///< (--update-sensor)
   bool rates_for_sensor_file = false;  ///< which may also be a gyroscope's axes
   bool is_phase = false;               ///< the channels are integrals of the quantity over time
-  bool may_drift = false;  ///< rest is determined after the drift is known, by the caller
+  bool leave_rest = false;  ///< the caller determines rest: after drift or beside other work
 };
 
 /// One channel, in SI if its unit is known, or the reason for refusal.
@@ -58,10 +58,14 @@ struct RestRecording {
   std::optional<std::int64_t> start_ns;  ///< time of the first sample on the file's clock
 };
 
-/// Determines the fraction of each channel at rest. Channels of one quantity are tested together,
-/// three at a time: a sensor that moves along one axis is not at rest along the others. start_s:
-/// time of the first sample on the recording's clock.
-void find_share_at_rest(double start_s, std::vector<RestChannel>& channels);
+/// Time of a recording's first sample that is used, on its clock.
+[[nodiscard]] double first_used_s(const InputFlags& input);
+
+/// Determines the fraction of each channel at rest. Channels of one quantity of a file are tested
+/// together, three at a time: a sensor that moves along one axis is not at rest along the others.
+/// start_s: that of first_used_s().
+void find_share_at_rest(double start_s, const std::vector<RestChannel*>& channels);
+[[nodiscard]] std::vector<RestChannel*> pointers_to(std::vector<RestChannel>& channels);
 
 /// Opens one of the files, whole or as a stream if it is larger than --memory. Throws Failure, also
 /// if there is no time base.

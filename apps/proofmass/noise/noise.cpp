@@ -162,7 +162,6 @@ std::vector<NoiseChannel> noise_channels(RestRecording recording, std::vector<No
     channel.shown.name = channel.rest.title;
     channel.shown.unit = channel.rest.unit;
     channel.shown.refused = channel.rest.refused;
-    channel.shown.rest = channel.rest.rest;
     if (recording.temperature) take_temperature_out(*recording.temperature, channel, notes);
   }
   return channels;
@@ -178,7 +177,8 @@ std::vector<NoiseChannel> noise_channels(const NoiseCommand& command,
                          .temperature = command.temperature,
                          .for_sensor_file = !command.update_sensor.empty(),
                          .rates_for_sensor_file = true,
-                         .is_phase = command.data == "phase"};
+                         .is_phase = command.data == "phase",
+                         .leave_rest = true};
   std::vector<NoiseChannel> all;
   for (const std::string& file : command.files) {
     auto opened = open_rest(file, rest);
@@ -206,7 +206,28 @@ void analyse(NoiseChannel& channel, NoiseOptions options) {
     channel.shown.analysis = std::move(found).value();
   else
     channel.shown.refused = found.error().message;
-  std::vector<double>().swap(channel.rest.series);
+}
+
+// Analyses the channels, and beside that finds where they are at rest, unless that is known.
+void analyse_all(const NoiseCommand& command,
+                 const NoiseOptions& options,
+                 std::vector<NoiseChannel>& channels) {
+  const bool seek_rests = !command.as_one && command.data != "phase";
+  const std::size_t count = channels.size();
+  std::vector<RestChannel*> rests;
+  for (NoiseChannel& channel : channels) rests.push_back(&channel.rest);
+  in_parallel(count + (seek_rests ? 1 : 0), progress_bar(command.output),
+              [&](std::size_t k, Progress progress) {
+                if (k == count) {
+                  find_share_at_rest(first_used_s(command.input), rests);
+                  return progress("rests", 1.0);
+                }
+                NoiseOptions own = options;
+                own.progress = std::move(progress);
+                analyse(channels[k], std::move(own));
+              });
+  for (NoiseChannel& channel : channels)
+    if (channel.rest.rest) channel.shown.rest = channel.rest.rest;
 }
 
 sensor::MeasuredCoefficient measured(const characterise::Coefficient& found) {
@@ -281,11 +302,7 @@ void run_noise(const NoiseCommand& command) {
       !command.as_one       ? noise_channels(command, options, report.notes)
       : holds_sums(command) ? join_sums(command, options, report.inputs, report.notes)
                             : analyse_joined(command, options, report.notes);
-  in_parallel(channels.size(), progress_bar(command.output), [&](std::size_t k, Progress progress) {
-    NoiseOptions own = options;
-    own.progress = std::move(progress);
-    analyse(channels[k], std::move(own));
-  });
+  analyse_all(command, options, channels);
   if (!command.update_sensor.empty()) {
     without_interruption([&] { update_noise(command.update_sensor, channels); });
   }

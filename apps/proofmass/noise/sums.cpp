@@ -255,7 +255,7 @@ void print_sums(const NoiseCommand& command, const NoiseOptions& noise) {
   options.input = command.input;
   options.output = command.output;
   options.input.memory_mb = std::numeric_limits<double>::infinity();
-  options.may_drift = true;  // the share at rest is not shown
+  options.leave_rest = true;  // the share at rest is not shown
   const std::string& file = command.files.front();
   RecordingSums sums;
   sums.key = flag.key;

@@ -28,13 +28,17 @@ Result<EvenGrid> even_grid(const TimeBase& time, std::size_t samples) {
   return grid;
 }
 
-std::vector<double> on_even_grid(View<double> values, const EvenGrid& grid) {
+std::vector<double> on_even_grid(std::vector<double> values, const EvenGrid& grid) {
   PM_EXPECTS(values.size() == grid.recorded);
+  for (double& value : values) value = plausible_or_nan(value);
+  if (grid.holes.empty()) return values;
   std::vector<double> series;
   series.reserve(grid.recorded + grid.missing);
-  std::size_t from = 0;
+  auto from = values.cbegin();
   const auto append = [&](std::size_t end) {
-    for (; from < end; ++from) series.push_back(plausible_or_nan(values[from]));
+    const auto last = values.cbegin() + static_cast<std::ptrdiff_t>(end);
+    series.insert(series.end(), from, last);
+    from = last;
   };
   for (const Hole& hole : grid.holes) {
     append(hole.before);

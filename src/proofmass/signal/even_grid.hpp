@@ -41,7 +41,7 @@ struct EvenGrid {
 [[nodiscard]] Result<EvenGrid> even_grid(const TimeBase& time, std::size_t samples);
 
 /// The values of a channel on the grid: NaN in the holes and for implausible values (is_plausible).
-/// Expects grid.recorded values.
-[[nodiscard]] std::vector<double> on_even_grid(View<double> values, const EvenGrid& grid);
+/// Expects grid.recorded values; without holes they are not copied.
+[[nodiscard]] std::vector<double> on_even_grid(std::vector<double> values, const EvenGrid& grid);
 
 }  // namespace proofmass::signal

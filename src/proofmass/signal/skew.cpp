@@ -25,7 +25,8 @@ std::vector<double> weights_of(double delay) {
 
 /// The channel on the even grid, delayed, and evaluated at the recorded samples.
 std::vector<double> moved(View<double> values, double delay, const EvenGrid& grid) {
-  const std::vector<double> even = delayed(on_even_grid(values, grid), delay);
+  const std::vector<double> even =
+      delayed(on_even_grid({values.begin(), values.end()}, grid), delay);
   std::vector<double> out;
   out.reserve(values.size());
   auto hole = grid.holes.begin();
