@@ -152,6 +152,11 @@ bool shows_motion(const RestChannel& channel) {
           quantity == Quantity::voltage || quantity == Quantity::counts);
 }
 
+// The same quantity of the same file.
+bool moves_with(const RestChannel& channel, const RestChannel& other) {
+  return channel.file == other.file && channel.unit.quantity == other.unit.quantity;
+}
+
 report::RestShare share_of(const signal::RestSearch& search,
                            std::size_t samples,
                            double rate_hz,
@@ -178,6 +183,7 @@ double first_used_s(const InputFlags& input) {
 
 std::vector<RestChannel*> pointers_to(std::vector<RestChannel>& channels) {
   std::vector<RestChannel*> all;
+  all.reserve(channels.size());
   for (RestChannel& channel : channels) all.push_back(&channel);
   return all;
 }
@@ -192,9 +198,7 @@ void find_share_at_rest(double start_s, const std::vector<RestChannel*>& channel
     for (; k < channels.size() && group.size() < most_axes; ++k) {
       RestChannel& channel = *channels[k];
       if (!shows_motion(channel) || channel.series.size() < fewest_samples) continue;
-      if (!group.empty() && (channel.file != group.front()->file ||
-                             channel.unit.quantity != group.front()->unit.quantity))
-        break;
+      if (!group.empty() && !moves_with(channel, *group.front())) break;
       axes.emplace_back(channel.series);
       group.push_back(&channel);
     }

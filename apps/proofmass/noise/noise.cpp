@@ -215,6 +215,7 @@ void analyse_all(const NoiseCommand& command,
   const bool seek_rests = !command.as_one && command.data != "phase";
   const std::size_t count = channels.size();
   std::vector<RestChannel*> rests;
+  rests.reserve(count);
   for (NoiseChannel& channel : channels) rests.push_back(&channel.rest);
   in_parallel(count + (seek_rests ? 1 : 0), progress_bar(command.output),
               [&](std::size_t k, Progress progress) {

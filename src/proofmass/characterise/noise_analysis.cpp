@@ -55,46 +55,74 @@ std::vector<double> without_events(View<double> series,
   return apart;
 }
 
+// The passes over a series, side by side where they are independent: over all of it, and over what
+// is analysed of it, which may be without events.
+class Passes {
+ public:
+  Passes(View<double> series, const NoiseOptions& options)
+      : accumulator(options, series.size()), used(series), series_(series), options_(options) {}
+
+  // Errors: those of RecordOverview's checks.
+  Status run() {
+    const auto look = [&] { overview.add(series_); };
+    const auto find_events = [&] {
+      events = signal::find_events(series_, {.rate_hz = options_.rate_hz});
+    };
+    const auto accumulate = [&] { accumulator.add(used); };
+    const auto follow_level = [&] { level.add(used); };
+    report("outliers and steps", 0.0);
+    if (options_.exclude_events)
+      run_tasks(series_.size(), {find_events, look});
+    else
+      run_tasks(series_.size(), {accumulate, find_events, follow_level, look});
+    if (Status varies = overview.check_spread(options_.lsb); !varies) return varies;
+    if (Status free = overview.check_rails(options_.lsb); !free) return free;
+    short_term_std = overview.short_term_std();
+    report("spectrum and deviations", 0.4);
+    if (!options_.exclude_events) return Done{};
+    if (!events.empty()) {
+      apart_ = without_events(series_, events, options_.rate_hz);
+      used = apart_;
+    }
+    overview = RecordOverview();
+    run_tasks(used.size(), {accumulate, follow_level, [&] { overview.add(used); }});
+    return Done{};
+  }
+
+  RecordOverview overview;  // of `used`
+  std::vector<signal::Event> events;
+  NoiseAccumulator accumulator;
+  StationarityTest level;
+  double short_term_std = 0.0;  // of the whole series
+  View<double> used;            // the series, or what is kept of it
+
+ private:
+  void report(const char* stage, double fraction) const {
+    if (options_.progress) options_.progress(stage, fraction);
+  }
+
+  View<double> series_;
+  const NoiseOptions& options_;
+  std::vector<double> apart_;
+};
+
 }  // namespace
 
 Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& options) {
   if (Status checked = check(series, options); !checked) return checked.error();
-  std::vector<double> changed, apart;
+  std::vector<double> changed;
   if (options.kind == SeriesKind::phase) {
     changed.resize(series.size() - 1);
     for (std::size_t k = 0; k < changed.size(); ++k)
       changed[k] = (series[k + 1] - series[k]) * options.rate_hz;
     series = changed;
   }
-  View<double> used = series;
-  RecordOverview raw, kept;
-  std::vector<signal::Event> events;
-  NoiseAccumulator accumulator(options, series.size());
-  StationarityTest differences;
-  const auto look = [&] { raw.add(series); };
-  const auto find_events = [&] {
-    events = signal::find_events(series, {.rate_hz = options.rate_hz});
-  };
-  const auto accumulate = [&] { accumulator.add(used); };
-  const auto follow_level = [&] { differences.add(used); };
-  if (options.progress) options.progress("outliers and steps", 0.0);
-  if (options.exclude_events)
-    run_tasks(series.size(), {find_events, look});
-  else
-    run_tasks(series.size(), {accumulate, find_events, follow_level, look});
-  if (Status varies = raw.check_spread(options.lsb); !varies) return varies.error();
-  if (Status free = raw.check_rails(options.lsb); !free) return free.error();
-  if (options.progress) options.progress("spectrum and deviations", 0.4);
-  if (options.exclude_events) {
-    if (!events.empty()) {
-      apart = without_events(series, events, options.rate_hz);
-      used = apart;
-    }
-    run_tasks(used.size(), {accumulate, follow_level, [&] { kept.add(used); }});
-  }
-  NoiseAnalysis analysis = accumulator.finish_spectrum();
+  Passes passes(series, options);
+  if (Status usable = passes.run(); !usable) return usable.error();
+  const View<double> used = passes.used;
+  NoiseAnalysis analysis = passes.accumulator.finish_spectrum();
   analysis.stationarity =
-      test_stationarity(differences, used, options.rate_hz, analysis.lines.lines);
+      test_stationarity(passes.level, used, options.rate_hz, analysis.lines.lines);
   if (!analysis.stationarity.stationary) {
     analysis.parts = noise_of_parts(used, options);
     widen_to_parts(analysis.parts, analysis.model);
@@ -102,19 +130,18 @@ Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& opt
   analysis.samples = series.size();
   analysis.duration_s = static_cast<double>(series.size()) / options.rate_hz;
   const CurveVariances variances = is_difference(options.statistic)
-                                       ? accumulator.variances()
+                                       ? passes.accumulator.variances()
                                        : whole_record_variances(used, options);
   if (variances.factors.empty()) return no_time_fits(options, series.size());
   analysis.deviation = deviation_curve(variances, analysis.model, used, options);
   analysis.lsb = options.lsb;
-  const RecordOverview& counted = options.exclude_events ? kept : raw;
-  analysis.mean = counted.mean();
-  analysis.missing = counted.missing() - (used.size() - series.size());
-  analysis.events = std::move(events);
+  analysis.mean = passes.overview.mean();
+  analysis.missing = passes.overview.missing() - (used.size() - series.size());
+  analysis.events = std::move(passes.events);
   note_stationarity(analysis);
   note_missing(analysis, variances.left_out);
   note_events(analysis, options.exclude_events);
-  note_resolution(analysis, raw.short_term_std());
+  note_resolution(analysis, passes.short_term_std);
   note_model(analysis);
   if (options.progress) options.progress("done", 1.0);
   return analysis;
