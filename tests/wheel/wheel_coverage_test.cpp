@@ -75,10 +75,13 @@ TEST(RipplingWheel, IsFollowedOnAVehicle) {
   EXPECT_LT(std::abs(turns.value - found.recorded.truth.turns), 5.0 * turns.std);
 }
 
-// The filter lost the phase for some seconds on a rough road: three turns fewer, +- 0.03.
+// The filter lost the phase for up to some seconds, on a rough road or in a push: two or three
+// turns fewer, +- 0.01 to 0.08.
 TEST(LostWheel, HasNoNumberOfTurns) {
-  for (const std::uint64_t seed : {5026U, 5090U}) {
-    const Estimated found = estimated("on-the-road", seed);
+  const std::vector<std::pair<const char*, std::uint64_t>> lost{
+      {"on-the-road", 5026}, {"on-the-road", 5090}, {"pushed", 5027}};
+  for (const auto& [name, seed] : lost) {
+    const Estimated found = estimated(name, seed);
     ASSERT_TRUE(found.said);
     const auto& turns = found.said->turns;
     EXPECT_TRUE(!turns || std::abs(turns->value - found.recorded.truth.turns) < 5.0 * turns->std);

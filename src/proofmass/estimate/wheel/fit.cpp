@@ -124,10 +124,10 @@ void add_doubt(std::size_t k,
   doubt.predicted = predicted;
 }
 
-/// Whether the measurements show gravity where the filter predicts it, by windows of a second:
+/// Whether the measurements show gravity where the filter predicts it, by windows of half a second:
 /// their component along the predicted direction is g on average, whatever the vibration, and
 /// nearly 0 if the filter has lost the phase. Then the innovations count as noise, so that neither
-/// they nor the predicted covariance show the loss.
+/// they nor the predicted covariance show the loss. A gyroscope or an encoder counts on meanwhile.
 template <int S>
 class GravityShown {
  public:
@@ -135,7 +135,8 @@ class GravityShown {
       : readings_(readings), doubts_(doubts) {}
 
   void add(const WheelModel<S>& model, std::size_t k, const StepOf<WheelModel<S>>& step) {
-    constexpr double window_s = 1.0, fewest = 20.0, shown = 0.7;
+    constexpr double window_s = 0.5, fewest = 20.0, shown = 0.65;
+    if (model.with_gyro || model.encoder != nullptr) return;
     const auto& mean = step.filtered.mean;
     std::size_t next = 0;
     for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
@@ -145,11 +146,11 @@ class GravityShown {
       along_mps2_ += std::sin(phi) * step.updates[next].innovation +
                      std::cos(phi) * step.updates[next + 1].innovation;
       count_ += 1.0;
-      next += model.has_speed(s, k) ? 3 : 2;
+      next += 2;
     }
-    if (readings_.time_s[k] - readings_.time_s[first_] < window_s) return;
+    if (readings_.time_s[k] - readings_.time_s[first_] < window_s || count_ < fewest) return;
     const double share = 1.0 + along_mps2_ / count_ / model.gravity_mps2;
-    if (first_ > 0 && count_ >= fewest && share < shown) doubt(k);
+    if (first_ > 0 && share < shown) doubt(k);
     first_ = k + 1;
     along_mps2_ = count_ = 0.0;
   }
