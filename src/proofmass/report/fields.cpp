@@ -362,8 +362,9 @@ std::string shown_value(const Field& field) {
     return fmt::format("{} {}", significant(*value * field.about.display->factor, 2),
                        field.about.display->unit);
   if (field.shape.kind != Kind::quantity) return std::visit(Shown{}, field.scalar.state());
-  const Display display =
-      field.about.display.value_or(Display{field.shape.unit == "1" ? "" : field.shape.unit});
+  // In a conditional expression with a literal, the string itself would become a temporary.
+  const std::string_view unit = field.shape.unit;
+  const Display display = field.about.display.value_or(Display{unit == "1" ? "" : unit});
   std::optional<Uncertain> figure = scaled(field.figure, display.factor);
   if (figure && std::isnan(figure->std)) figure->std = 0.0;  // shown without a standard deviation
   return with_std(figure, display.unit, absent);
