@@ -28,10 +28,12 @@ TimeRange scale_range(const DriftEvidence& evidence, DriftShape shape) {
   return {0.25 * evidence.block_s(), 10.0 * record_s};
 }
 
-// Columns that depend on the scales, at these scales.
+// Columns that depend on the scales, at these scales; of two exponentials the first alone while the
+// second is not yet started.
 MatrixXd varying_columns(const DriftEvidence& evidence, DriftShape shape, View<double> log_times) {
-  MatrixXd columns(evidence.blocks(), static_cast<Index>(amplitudes_of(shape)));
-  for (std::size_t k = 0; k < amplitudes_of(shape); ++k) {
+  const std::size_t count = is_exponential(shape) ? log_times.size() : amplitudes_of(shape);
+  MatrixXd columns(evidence.blocks(), static_cast<Index>(count));
+  for (std::size_t k = 0; k < count; ++k) {
     const auto column = static_cast<Index>(k);
     if (is_exponential(shape)) {
       columns.col(column) = evidence.rise(std::exp(log_times[k]));
