@@ -47,6 +47,7 @@ class Parts {
     options_.input = command.input;
     options_.output = command.output;
     options_.input.memory_mb = std::numeric_limits<double>::infinity();
+    options_.leave_rest = true;  // the share at rest is not shown
   }
 
   /// The first file must be read before the others.
