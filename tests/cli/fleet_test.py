@@ -220,6 +220,12 @@ class BySensor(FleetTest):
         self.assertEqual(self.counts(document), (1, 0, 0, 1))
         self.assertIn("h01.csv: no row of numbers", document["failed"][0]["reason"])
 
+    def test_the_share_at_rest_is_not_that_of_the_first_file(self):
+        self.day(samples=1000, missing=0, hours=2)
+        rest = lambda *words: self.document("noise", *words)["channels"][0]["rest"]
+        self.assertIsNotNone(rest("h00.csv"))
+        self.assertIsNone(rest("h00.csv", "h01.csv", "--as-one", "--starts", "0,3600"))
+
     def test_weeks_between_recordings_take_no_time(self):
         self.day(samples=400, missing=0, hours=2)
         starts = "0,6e5"  # a week; 7.5 million samples at this rate
