@@ -153,6 +153,33 @@ class Killed(CommandTest):
         self.write("imu.toml", '[sensor]\nname = "imu"\nserial = "7"\n')
         self.check(["rest.csv", "imu.toml"], "imu.toml", "noise", "rest.csv", "--update-sensor", "imu.toml", "-q")
 
+    def test_record(self):
+        """Of a killed recorder's data at most the last second is missing, and an older file stays."""
+        rate_hz, draw = 1000, random.Random(7)
+        older = self.write("older.mcap", "a recorder's")
+        for _ in range(INSTANTS):
+            run = subprocess.Popen([PROGRAM, "record", f"sim:?rate={rate_hz}", "-o", "run.mcap", "-q"], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            part, ends = self.folder / "run.mcap.part", time.monotonic() + draw.uniform(0.0, 3.0)
+            began = None
+            while time.monotonic() < ends:
+                if began is None and part.exists():
+                    began = time.monotonic()
+                time.sleep(0.005)
+            run.send_signal(signal.SIGKILL)
+            lived_s = time.monotonic() - began if began else 0.0
+            run.wait()
+            self.assertEqual(older.read_text(), "a recorder's")
+            self.assertFalse((self.folder / "run.mcap").exists())
+            samples = 0
+            if part.exists():
+                if self.run_command("recover", "run.mcap.part").returncode == DONE:
+                    samples = self.document("inspect", "run.mcap")["samples"]
+                    (self.folder / "run.mcap").unlink()
+                else:
+                    part.unlink()
+            self.assertGreater(samples, (lived_s - 1.0) * rate_hz, f"killed after {lived_s:.3f} s")
+
 
 class Packed(CommandTest):
     @unittest.skipUnless("PROOFMASS_KILLS" in os.environ, "half a minute; in the long run")

@@ -1,8 +1,12 @@
 #include "proofmass/signal/channel_audit.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/signal/audit/subsample.hpp"
 
 namespace proofmass::signal {
@@ -60,12 +64,31 @@ GridFit fit_grid(const std::vector<Difference>& differences, double step) {
   return fit;
 }
 
+/// Number of distinct values, by open addressing, which is faster than sorting them.
+std::size_t count_distinct(View<double> values) {
+  const std::size_t size = std::bit_ceil(2 * values.size());
+  const int unused_bits = 64 - std::countr_zero(size);
+  std::vector<double> table(size, no_value);
+  std::size_t count = 0;
+  for (const double value : values) {
+    const double key = value + 0.0;  // −0 is 0
+    constexpr std::uint64_t golden = 0x9e3779b97f4a7c15;
+    std::size_t at = std::bit_cast<std::uint64_t>(key) * golden >> unused_bits;
+    while (table[at] != key && !std::isnan(table[at])) at = (at + 1) % size;
+    if (table[at] == key) continue;
+    table[at] = key;
+    ++count;
+  }
+  return count;
+}
+
 }  // namespace
 
 std::optional<double> find_lsb_of_plausible(std::vector<double> values) {
+  if (values.size() < 2 || count_distinct(values) * 2 > values.size()) return std::nullopt;
   std::ranges::sort(values);
   const std::vector<Difference> differences = differences_of(values);
-  if (differences.empty() || (differences.size() + 1) * 2 > values.size()) return std::nullopt;
+  if (differences.empty()) return std::nullopt;
   std::vector<double> sizes;
   sizes.reserve(differences.size());
   for (const Difference& difference : differences) sizes.push_back(difference.size);

@@ -84,9 +84,8 @@ double duration_of_excursion(View<double> series,
 
 }  // namespace
 
-std::optional<RangeLimit> find_crowded_limit(View<double> series) {
+std::optional<RangeLimit> find_crowded_limit(View<double> series, const Extent& extent) {
   constexpr std::size_t fewest_values = 200;
-  const Extent extent = extent_of(series);
   if (series.size() < fewest_values || !(extent.range() > 0.0)) return std::nullopt;
   const auto level = find_crowd(series, extent);
   if (!level) return std::nullopt;

@@ -209,8 +209,7 @@ bool are_flanks_of_a_sine(View<double> series,
 
 }  // namespace
 
-std::optional<RangeLimit> find_hard_limit(View<double> series) {
-  const Extent extent = extent_of(series);
+std::optional<RangeLimit> find_hard_limit(View<double> series, const Extent& extent) {
   const double range = extent.range();
   const std::vector<Window> windows = windows_of(series);
   const auto ceiling = find_ceiling(windows, extent);

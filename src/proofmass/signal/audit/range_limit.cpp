@@ -9,14 +9,11 @@
 namespace proofmass::signal {
 
 std::optional<RangeLimit> find_upper_limit(View<double> series) {
-  if (const auto hard = find_hard_limit(series)) return hard;
-  if (const auto crowded = find_crowded_limit(series)) return crowded;
-  return find_soft_limit(series);
-}
-
-Extent extent_of(View<double> series) {
   const Moments all = moments(series);
-  return {all.min, median_or_zero(series), all.max};
+  const Extent extent{all.min, median_or_zero(series), all.max};
+  if (const auto hard = find_hard_limit(series, extent)) return hard;
+  if (const auto crowded = find_crowded_limit(series, extent)) return crowded;
+  return find_soft_limit(series, extent);
 }
 
 std::vector<double> slopes_at(View<double> series, double level) {

@@ -8,14 +8,6 @@
 // Level crossings of a series, used to detect both kinds of limits.
 namespace proofmass::signal {
 
-/// Minimum, middle and maximum of a series' finite values.
-struct Extent {
-  double low = 0.0, median = 0.0, high = 0.0;
-  [[nodiscard]] double range() const { return high - low; }
-};
-
-[[nodiscard]] Extent extent_of(View<double> series);
-
 /// Slopes per sample at the crossings of a level, over three steps.
 [[nodiscard]] std::vector<double> slopes_at(View<double> series, double level);
 

@@ -3,12 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
 
 namespace proofmass::signal {
 namespace {
 
 constexpr std::size_t most_blocks = 256;
+
+/// Factor of the slope's standard deviation for the bias and the scatter of its variance, which is
+/// estimated with Bartlett weights over `lags` lags of n residuals, evenly spaced over x in (−1,
+/// 1).
+///
+/// - Bias: residuals have the covariance σ²(δ_ij − (1 + 3 x_i x_j)/n), weighted by x² in the sum
+/// over
+///   the lags, which removes the fraction 2.8 lags/n of the variance.
+/// - Scatter: the weights x² reduce the number of residuals to 5n/9, and the estimate has
+///   3/2 · 5n/9 / lags degrees of freedom (M. B. Priestley, Spectral Analysis and Time Series
+///   (1981), 6.2.4, at zero frequency): Student's t in place of the normal distribution.
+double inflation_of(std::size_t residuals, std::size_t lags) {
+  const double per_lag = static_cast<double>(residuals) / static_cast<double>(lags);
+  constexpr double tail = 0.975, normal = 1.959963984540054;
+  return std::sqrt(per_lag / (per_lag - 2.8)) * student_t_quantile(tail, per_lag * 5.0 / 6.0) /
+         normal;
+}
 
 }  // namespace
 
@@ -64,10 +82,9 @@ std::optional<RateLine::Rate> RateLine::rate() const {
     const double weight = 1.0 - static_cast<double>(lag) / static_cast<double>(alike + 1);
     variance += (lag == 0 ? 1.0 : 2.0 * weight) * sum;
   }
-  const auto blocks = static_cast<double>(blocks_.size());
-  const double lost_freedom = blocks / (blocks - 2.0 - static_cast<double>(alike));
-  const double std_s = std::sqrt(std::max(0.0, variance) * lost_freedom) / squares;
-  return Rate{1.0 / step_s, std_s / square(step_s)};
+  const double std_s = std::sqrt(std::max(0.0, variance)) / squares;
+  const double inflation = inflation_of(blocks_.size(), alike + 1);
+  return Rate{1.0 / step_s, inflation * std_s / square(step_s)};
 }
 
 }  // namespace proofmass::signal

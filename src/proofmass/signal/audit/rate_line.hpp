@@ -16,7 +16,7 @@ class RateLine {
 
   struct Rate {
     double hz = 0.0;
-    double std_hz = 0.0;
+    double std_hz = 0.0;  ///< 1.96 of it on either side contain 95 %
   };
   /// No value for fewer than 16 stamps, or if time does not increase.
   /// Source: W. K. Newey, K. D. West, Econometrica 55 (1987) 703, for the variance of a slope under

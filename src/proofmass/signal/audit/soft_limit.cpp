@@ -98,14 +98,16 @@ bool are_crests_bent(const Profile& profile, double height, double noise) {
 
 }  // namespace
 
-std::optional<RangeLimit> find_soft_limit(View<double> series) {
-  constexpr double outermost = 8.0;  // number of values that may be outliers
-  const double middle = median_or_zero(series);
+std::optional<RangeLimit> find_soft_limit(View<double> series, const Extent& extent) {
+  constexpr double outermost = 8.0;    // number of values that may be outliers
+  constexpr double most_noise = 0.02;  // of the height
+  const double middle = extent.median;
+  const double noise = noise_of(series);
+  if (noise > most_noise * (extent.high - middle)) return std::nullopt;
   const double share =
       1.0 - outermost / static_cast<double>(std::max<std::size_t>(series.size(), 9));
   const double height = quantile(series, share).value_or(middle) - middle;
-  const double noise = noise_of(series);
-  if (!(height > 0.0) || noise > 0.02 * height) return std::nullopt;
+  if (!(height > 0.0) || noise > most_noise * height) return std::nullopt;
   Profile profile;
   for (std::size_t k = 0; k < heights.size(); ++k)
     profile[k] = crossing_at(series, middle + heights[k] * height, noise);
