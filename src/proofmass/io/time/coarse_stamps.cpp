@@ -5,7 +5,6 @@
 #include <limits>
 #include <numeric>
 
-#include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/io/time/stamp_steps.hpp"
 #include "proofmass/signal/resample/stamp_band.hpp"
@@ -43,21 +42,60 @@ std::vector<double> rises_over(View<double> stamps, std::size_t rows) {
   return out;
 }
 
-/// True if the ticks beyond (or short of) one per row are spread more evenly than by chance.
+/// Ticks beyond (or short of) one per row in runs of `rows` rows.
+std::vector<double> odd_ticks_over(View<double> stamps, std::size_t rows, double tick) {
+  std::vector<double> out = rises_over(stamps, rows);
+  for (double& rise : out) rise = std::abs(std::round(rise / tick) - static_cast<double>(rows));
+  return out;
+}
+
+/// Odd ticks per row, without the runs in which several rows are missing.
+double share_of_odd_ticks(View<double> stamps, double tick) {
+  constexpr std::size_t rows = 16;
+  const std::vector<double> odd = odd_ticks_over(stamps, rows, tick);
+  const double usual = median(odd).value_or(0.0);
+  Moments near;
+  for (const double count : odd)
+    if (std::abs(count - usual) <= 1.0) near.add(count);
+  return near.mean / static_cast<double>(rows);
+}
+
+/// Largest probability of two adjacent numbers of events, for n independent ones of probability p.
+double of_two_adjacent(std::size_t n, double p) {
+  double at = std::pow(1.0 - p, static_cast<double>(n)), most = at;
+  for (std::size_t k = 1; k <= n; ++k) {
+    const double next =
+        at * p / (1.0 - p) * static_cast<double>(n - k + 1) / static_cast<double>(k);
+    most = std::max(most, at + next);
+    if (next < at && at + next < most) break;
+    at = next;
+  }
+  return most;
+}
+
+/// True if the ticks beyond (or short of) one per row are spread more evenly than by chance: runs
+/// of as many rows as hold two of them on average hold one of two adjacent numbers more often. Runs
+/// in which rows are missing, as when a logger is busy, do not count against this.
 bool are_evenly_spread(View<double> stamps, double tick) {
-  const double rise = stamps.back() - stamps.front();
-  const double rows = static_cast<double>(stamps.size() - 1);
-  const double odd = std::abs(rise / tick - rows);
-  const double share = odd / rows;
-  if (!(odd >= 12.0) || share > 0.52) return false;
-  Moments ticks;
-  for (const double some : rises_over(stamps, static_cast<std::size_t>(std::ceil(2.0 / share))))
-    ticks.add(some / tick);
-  if (ticks.count < 5) return false;
-  constexpr double chance = 1e-4;
-  const double by_chance = 2.0 * (1.0 - share);
-  return 1.0 - chi_square_p(ticks.squares / by_chance, static_cast<double>(ticks.count - 1)) <
-         chance;
+  const double share = share_of_odd_ticks(stamps, tick);
+  if (!(share * static_cast<double>(stamps.size() - 1) >= 12.0) || share > 0.52) return false;
+  const auto rows = static_cast<std::size_t>(std::ceil(2.0 / share));
+  std::vector<double> odd = odd_ticks_over(stamps, rows, tick);
+  if (odd.size() < 5) return false;
+  std::ranges::sort(odd);
+  std::size_t most = 0;
+  for (std::size_t first = 0, end = 0; first < odd.size(); ++first) {
+    while (end < odd.size() && odd[end] <= odd[first] + 1.0) ++end;
+    most = std::max(most, end - first);
+  }
+  constexpr double significant = 3.7;  // a chance of 10⁻⁴
+  const auto runs = static_cast<double>(odd.size());
+  // If the tick is almost the period, a missing row looks like a tick that is due to rounding.
+  constexpr double almost = 0.05, nearly_all = 0.95;
+  if (share < almost && static_cast<double>(most) < nearly_all * runs) return false;
+  const double by_chance = of_two_adjacent(rows, share);
+  return static_cast<double>(most) >
+         by_chance * runs + significant * std::sqrt(by_chance * (1.0 - by_chance) * runs);
 }
 
 /// From runs without missing rows: the shortest of short ones, then of ever longer ones those that

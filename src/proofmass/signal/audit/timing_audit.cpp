@@ -10,6 +10,7 @@ namespace proofmass::signal {
 
 void RunningTiming::add(View<double> stamps_s) {
   if (stamps_s.empty()) return;
+  if (stamps_ == 0) first_s_ = stamps_s.front();
   if (rate_hz_ > 0.0) {
     if (stamps_ > 0) add_step(last_s_, stamps_s[0] - last_s_);
     const StepStatistics steps = step_statistics(stamps_s, 1.0 / rate_hz_);
@@ -59,15 +60,18 @@ void RunningTiming::take_numbers() {
   }
 }
 
-// Standard deviation of the fitted line's rate, and the deviation of the usual interval from it. If
-// all intervals are whole numbers of nominal periods and some rows are missing by them, the stamps
-// may be rounded to a period. Then up to one row in the longest segment without a hole may not be
+// Standard deviation of the fitted line's rate, the deviation of the usual interval from it, and
+// the slope that is possible in the part of a band that the rounded stamps do not fill. If all
+// intervals are whole numbers of nominal periods and some rows are missing by them, the stamps may
+// be rounded to a period. Then up to one row in the longest segment without a hole may not be
 // missing, and the rate may be that much lower.
 std::optional<double> RunningTiming::rate_std_hz() const {
   const auto line = line_.rate();
   if (!line) return std::nullopt;
   double variance = square(line->std_hz) + square(line->hz - rate_hz_);
-  if (band_s_ == 0.0 && in_whole_steps_ && holes_.hole_count() > 0)
+  if (last_s_ > first_s_)
+    variance += square(rate_hz_ * holes_.unfilled_s() / (last_s_ - first_s_)) / 3.0;
+  if (in_whole_steps_ && holes_.hole_count() > 0)
     variance += square(rate_hz_ / static_cast<double>(longest_unbroken_)) / 3.0;
   const double std_hz = std::sqrt(variance);
   // Below this it is floating-point rounding.
@@ -84,7 +88,9 @@ void RunningTiming::add_gap(const Gap& gap) {
 void RunningTiming::add_step(double before_s, double step_s) {
   const double nominal_s = 1.0 / rate_hz_;
   const double deviation_s = step_s - nominal_s;
-  if (std::abs(std::remainder(step_s, nominal_s)) > 1e-3 * nominal_s) in_whole_steps_ = false;
+  // The nominal period may be off by 10⁻³, and so are its multiples.
+  if (std::abs(std::remainder(step_s, nominal_s)) > 1e-3 * std::max(std::abs(step_s), nominal_s))
+    in_whole_steps_ = false;
   if (step_s < 0.0) ++found_.backwards;
   if (step_s == 0.0) ++found_.repeated;
   if (step_s > 1.5 * nominal_s && band_s_ == 0.0) add_gap({before_s, step_s});

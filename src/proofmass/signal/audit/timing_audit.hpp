@@ -46,7 +46,7 @@ class RunningTiming {
   std::size_t longest_unbroken_ = 0;
   bool in_whole_steps_ = true;  ///< every interval is a whole number of nominal periods
   std::size_t stamps_ = 0;
-  double last_s_ = 0.0;
+  double first_s_ = 0.0, last_s_ = 0.0;
   TimingAudit found_;  ///< counts and gaps
   double squares_ = 0.0;
   std::size_t regular_ = 0;

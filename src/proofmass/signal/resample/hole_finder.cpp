@@ -1,13 +1,17 @@
 #include "proofmass/signal/resample/hole_finder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
+
+#include "proofmass/core/statistics.hpp"
 
 namespace proofmass::signal {
 namespace {
 
-constexpr std::size_t nearby = 8;  // samples near a long interval that may compensate for it
+constexpr std::size_t nearby = 8;     // samples on either side of a long interval
+constexpr double longest_step = 1.5;  // in sample periods, if no sample is missing
 
 }  // namespace
 
@@ -71,7 +75,7 @@ void HoleFinder::decide(bool is_end, std::vector<Hole>& holes) {
   for (; decided_ < samples_; ++decided_) {
     const std::size_t at = decided_ - first;
     const double steps = (recent_[at] - recent_[at - 1]) * rate_hz_;
-    if (!(steps > 1.5)) {
+    if (!(steps > longest_step)) {
       ascending_ = ascending_ && steps > -1.0;
       squares_ += (steps - 1.0) * (steps - 1.0);
       ++regular_;
@@ -83,15 +87,38 @@ void HoleFinder::decide(bool is_end, std::vector<Hole>& holes) {
 }
 
 // Samples missing before the one at this index of the recent ones, which follows a long interval.
+//
+// - By the interval, if it is a whole number of periods to within a fourth; otherwise by the
+// medians
+//   of up to `nearby` stamps on either side, relative to an even grid, as far as no other long
+//   interval follows: these average out the jitter of the two stamps.
+// - At most as many as are missing in all of `nearby` stamps on either side, other long intervals
+//   included: after late stamps others follow early.
 double HoleFinder::missing_before(std::size_t at) const {
-  const double by_step = std::round((recent_[at] - recent_[at - 1]) * rate_hz_) - 1.0;
-  const std::size_t first = at - std::min(at, nearby);
-  const std::size_t last = std::min(at + nearby, recent_.size() - 1);
-  const double by_others =
-      std::round((recent_[last] - recent_[first]) * rate_hz_) - static_cast<double>(last - first);
-  // Near another hole, the neighbours count that one too; by_step bounds the contribution of this
-  // one.
-  return std::max(0.0, std::min(by_step, by_others));
+  constexpr double clear = 0.25;
+  const auto offset = [&](std::size_t k) {
+    return (recent_[k] - recent_[at]) * rate_hz_ -
+           (static_cast<double>(k) - static_cast<double>(at));
+  };
+  const auto is_long = [&](std::size_t k) {
+    return (recent_[k] - recent_[k - 1]) * rate_hz_ > longest_step;
+  };
+  std::array<double, nearby> offsets{};
+  const auto median_of = [&](std::size_t from, std::size_t end) {
+    for (std::size_t k = from; k < end; ++k) offsets[k - from] = offset(k);
+    return *median(View<double>(offsets).first(end - from));
+  };
+  double missing = -offset(at - 1);
+  if (std::abs(missing - std::round(missing)) > clear) {
+    std::size_t first = at - 1, end = at + 1;
+    while (first > 0 && at - first < nearby && !is_long(first)) --first;
+    while (end < recent_.size() && end - at < nearby && !is_long(end)) ++end;
+    missing = median_of(at, end) - median_of(first, at);
+  }
+  const double in_all =
+      offset(std::min(at + nearby, recent_.size() - 1)) - offset(at - std::min(at, nearby));
+  // Rounded up: the jitter of the outermost stamps must not hide a missing sample.
+  return std::max(0.0, std::min(std::round(missing), std::floor(in_all + 1.0 - clear)));
 }
 
 Status HoleFinder::check(std::size_t samples, double spare) const {

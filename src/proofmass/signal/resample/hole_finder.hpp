@@ -34,6 +34,8 @@ class HoleFinder {
   [[nodiscard]] std::size_t samples() const { return samples_; }
   [[nodiscard]] double missing() const { return missing_; }
   [[nodiscard]] std::size_t hole_count() const { return hole_count_; }
+  /// StampBand::unfilled(); 0 without a band.
+  [[nodiscard]] double unfilled_s() const { return band_ ? band_->unfilled() : 0.0; }
 
   /// Errors: corrupt, if more than 3 × `samples` + `spare` are missing.
   [[nodiscard]] Status check(std::size_t samples, double spare) const;

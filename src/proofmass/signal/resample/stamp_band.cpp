@@ -16,11 +16,21 @@ bool StampBand::holds(double stamp) const {
   return !has_begun_ || stamp - first_ - number_ * step_ <= low_ + width_ + slack * step_;
 }
 
-/// Mean distance of the stamps outside the band, if `missing` rows are missing before them.
+/// Mean distance of the stamps outside the band, if `missing` rows are missing before them. Rounded
+/// stamps above the band may be due to further rows missing between them, those below it may not.
 double StampBand::outside(View<double> next, double missing) const {
+  constexpr double price = 0.1;  // of a further missing row, in steps
   double sum = 0.0;
+  double later = 0.0;
   for (std::size_t k = 0; k < next.size(); ++k) {
-    const double off = next[k] - first_ - (number_ + missing + static_cast<double>(k)) * step_;
+    double off = next[k] - first_ - (number_ + missing + later + static_cast<double>(k)) * step_;
+    const double above = off - (low_ + width_ + slack * step_);
+    if (above > 0.0 && k > 0 && missing > 0.0 && is_of_rounding()) {
+      const double more = std::ceil(above / step_);
+      later += more;
+      off -= more * step_;
+      sum += price * step_ * more;
+    }
     sum += std::max({0.0, off - (low_ + width_), (high_ - width_) - off});
   }
   return sum / static_cast<double>(next.size());
@@ -61,6 +71,7 @@ void StampBand::take(double stamp, double missing) {
   // A stamp outside the band moves it: the latest one counts.
   if (off >= high_) low_ = std::max(low_, high_ - width_);
   if (off <= low_) high_ = std::min(high_, low_ + width_);
+  filled_ = std::max(filled_, high_ - low_);
 }
 
 namespace {

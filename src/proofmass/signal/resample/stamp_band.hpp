@@ -25,11 +25,16 @@ class StampBand {
   /// the number with which most of them lie in the band; 0 unless another number is far better.
   [[nodiscard]] double missing_before(View<double> next) const;
   void take(double stamp, double missing);
+  /// Rounded stamps: the part of the width that none of them reached. The period may be off by this
+  /// over the duration: with steps of exactly 5/4 of a tick, the stamps are at every fourth of a
+  /// tick. 0 for packets, whose band is as wide as the range of their delays.
+  [[nodiscard]] double unfilled() const { return is_of_rounding() ? width_ - filled_ : 0.0; }
   /// Sum of the distances of the stamps outside the band.
   [[nodiscard]] double strain() const { return strain_; }
 
  private:
   [[nodiscard]] double outside(View<double> next, double missing) const;
+  [[nodiscard]] bool is_of_rounding() const { return width_ < 2.5 * step_; }
 
   double step_;
   double width_;
@@ -38,6 +43,7 @@ class StampBand {
   double number_ = 0.0;  ///< number of the next sample, missing ones counted
   double low_ = 0.0;     ///< lower edge of the recent stamps minus their even times
   double high_ = 0.0;
+  double filled_ = 0.0;  ///< largest difference of the edges
   double strain_ = 0.0;
 };
 
