@@ -79,13 +79,18 @@ double noise_of_means(const std::vector<double>& means, double white) {
   return std::max(white, robust_std(bends).value_or(0.0));
 }
 
-BlockLevels levels_of(
-    View<double> axis, const signal::Rest& rest, std::size_t block, double noise, double step) {
-  BlockLevels out;
+std::vector<double> block_means(View<double> axis, const signal::Rest& rest, std::size_t block) {
+  std::vector<double> out;
   for (std::size_t k = rest.first; k + block <= rest.last + 1; k += block) {
     const Moments here = moments(axis.subspan(k, block));
-    out.means.push_back(here.count > 0 ? here.mean : no_value);
+    out.push_back(here.count > 0 ? here.mean : no_value);
   }
+  return out;
+}
+
+BlockLevels levels_of(
+    View<double> axis, const signal::Rest& rest, std::size_t block, double noise, double step) {
+  BlockLevels out{.means = block_means(axis, rest, block)};
   const double white = noise / std::sqrt(static_cast<double>(block));
   out.room = sure * noise_of_means(out.means, white) + bias_change_mps2 + step;
   return out;
@@ -113,6 +118,22 @@ void add_standing(const signal::Rest& rest,
     for (BlockLevels& axis : axes) axis.take(b);
   }
   add(rest.last);
+}
+
+// True if the level of a rest of this length changes by more than a sensor's drift in that time,
+// and clearly by more than noise: a slow motion or acceleration.
+bool creeps(
+    View<double> axis, const signal::Rest& rest, std::size_t block, double noise, double s) {
+  constexpr double sure = 6.0, drift_time_s = 60.0;
+  const std::vector<double> means = block_means(axis, rest, block);
+  const Moments all = moments(means);
+  if (all.count < 3) return false;
+  const double white = noise / std::sqrt(static_cast<double>(block));
+  const double by_noise = square(noise_of_means(means, white));
+  const auto count = static_cast<double>(all.count);
+  const double drift = bias_change_mps2 * std::sqrt(std::min(1.0, s / drift_time_s));
+  return all.squares > (count + sure * std::sqrt(2.0 * count)) * by_noise &&
+         square(all.std()) - by_noise > square(drift);
 }
 
 double usual_rate_hz(const std::vector<double>& time_s) {
@@ -149,16 +170,21 @@ signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options
   return found;
 }
 
-void drop_smooth_rests(const TiltRecord& record, signal::RestSearch& found) {
+void drop_slow_motion(const TiltRecord& record, signal::RestSearch& found) {
   constexpr double edge = 1.5;  // times the noise
+  const double rate_hz = usual_rate_hz(record.time_s);
+  const std::size_t block = std::max<std::size_t>(1, found.window / 2);
   std::erase_if(found.rests, [&](const signal::Rest& rest) {
+    const double length_s = static_cast<double>(rest.last - rest.first + 1) / rate_hz;
     std::size_t row = 0;
+    bool is_smooth = true;
     for (const auto& axis : record.accel_mps2) {
       if (axis.empty()) continue;
       const double noise = found.noise_std[row++];
-      if (left_of_polynomial(axis, rest) > square(edge * noise)) return false;
+      if (creeps(axis, rest, block, noise, length_s)) return true;
+      is_smooth = is_smooth && left_of_polynomial(axis, rest) <= square(edge * noise);
     }
-    return true;
+    return is_smooth;
   });
 }
 

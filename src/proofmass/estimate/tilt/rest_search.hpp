@@ -13,7 +13,8 @@ namespace proofmass::estimate {
 [[nodiscard]] signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options);
 
 /// For a moving base: drops quiet intervals that join smoothly to their neighbours, such as the
-/// crest of a slow acceleration. A rest begins or ends abruptly.
-void drop_smooth_rests(const TiltRecord& record, signal::RestSearch& found);
+/// crest of a slow acceleration, because a rest begins or ends abruptly; and those whose level
+/// changes by more than 2 mg √(duration/60 s), clearly beyond noise.
+void drop_slow_motion(const TiltRecord& record, signal::RestSearch& found);
 
 }  // namespace proofmass::estimate
