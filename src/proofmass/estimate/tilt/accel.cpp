@@ -18,7 +18,9 @@ constexpr double memory_times = 60.0, least_memory_s = 2.0, most_memory_s = 20.0
 constexpr double effective_dof = 10.0;
 // Lower limit of the acceleration in motion, relative to gravity.
 constexpr double least_accel = 2e-3;
-constexpr double longest_s = 2.0;
+// Longest correlation time, and the same relative to the memory of the mean, which removes what is
+// slower.
+constexpr double longest_s = 2.0, longest_of_memory = 0.4;
 
 // Departures of the force, rotated to one static frame for the autocorrelation.
 struct Departures {
@@ -27,7 +29,7 @@ struct Departures {
 };
 
 // Lag at which the pooled autocorrelation has fallen to 1/e.
-double correlation_time(const Departures& found, double step_s) {
+double correlation_time(const Departures& found, double step_s, double longest_s) {
   const std::size_t size = found.vectors.size();
   double zero = 0.0;
   for (const Mat<3>& v : found.vectors) zero += v.squaredNorm();
@@ -100,7 +102,8 @@ BaseAccel base_accel_over(const TiltInstants& instants,
     out.cov_m2ps4.push_back(scatter.covariance(known.gravity_mps2, known.norm_std_mps2) + least);
   }
   const double step_s = median(steps).value_or(0.01);
-  out.time_s = std::max(correlation_time(departures, step_s), 0.5 * step_s);
+  const double longest = std::max(longest_s, longest_of_memory * mean_memory_s);
+  out.time_s = std::max(correlation_time(departures, step_s, longest), 0.5 * step_s);
   out.reading_std_mps2 = std::max(
       1e-4 * known.gravity_mps2, std::numbers::sqrt2 / 2.0 * robust_std(differences).value_or(0.0));
   return out;

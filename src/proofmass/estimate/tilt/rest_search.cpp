@@ -104,8 +104,10 @@ void add_standing(const signal::Rest& rest,
                   std::vector<signal::Rest>& out) {
   const std::size_t blocks = axes.front().means.size();
   std::size_t first = rest.first;
+  // The level changes without an edge: what is short beside it may be slow motion, too.
   const auto add = [&](std::size_t last) {
-    if (last + 1 >= first + shortest) out.push_back({first, last});
+    const bool is_part = first > rest.first || last < rest.last;
+    if (last + 1 >= first + (is_part ? 4 * shortest : shortest)) out.push_back({first, last});
   };
   for (std::size_t b = 0; b < blocks; ++b) {
     if (!std::ranges::all_of(axes, [b](const BlockLevels& axis) { return axis.stands(b); })) {
