@@ -34,9 +34,11 @@ void note_rests(const TrackOptions& options, TrackSolution& solution) {
               "velocities integrated up to them cancel, which a tilt or bias would not cause",
               solution.cruises)});
   if (solution.plateaus > 0 && decided)
-    notes.push_back({Severity::info,
-                     text("%zu quiet intervals are taken as constant acceleration: the magnitude "
-                          "of the measurements differs from that at rest",
+    notes.push_back({Severity::warning,
+                     text("%zu quiet intervals are taken as constant acceleration instead of rest: "
+                          "the magnitude of the measurements differs from that at rest, or their "
+                          "level and the velocities do; if the sensor was only tilted there, a "
+                          "gyroscope would show it",
                           solution.plateaus)});
   if (solution.false_rests > 0)
     notes.push_back({Severity::info,
