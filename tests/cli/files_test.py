@@ -161,9 +161,11 @@ class Killed(CommandTest):
             run = subprocess.Popen([PROGRAM, "record", f"sim:?rate={rate_hz}", "-o", "run.mcap", "-q"], cwd=self.folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             part, ends = self.folder / "run.mcap.part", time.monotonic() + draw.uniform(0.0, 3.0)
-            began = None
+            heading = began = None  # size of the file without data; when the first data were in it
             while time.monotonic() < ends:
-                if began is None and part.exists():
+                size = part.stat().st_size if part.exists() else 0
+                heading = heading or size
+                if began is None and size > heading:
                     began = time.monotonic()
                 time.sleep(0.005)
             run.send_signal(signal.SIGKILL)

@@ -258,6 +258,27 @@ TEST(Tilt, WithoutAGyroscopeTheBandHoldsWhatALevelAccelerationHides) {
   EXPECT_GE(inside, 0.93 * all);
 }
 
+// After a rest, an acceleration of 0.42 m/s² that changes by a few mg in five seconds.
+TEST(Tilt, TakesNoIntervalWhoseLevelCreepsForARest) {
+  const auto accel_mps2 = [](double t) {
+    if (t < 4.0 || t > 56.0) return 0.0;
+    if (t < 5.5) return 0.21 * (1.0 - std::cos(M_PI * (t - 4.0) / 1.5));
+    if (t < 11.0) return 0.42 + 0.03 * std::sin(M_PI * (t - 5.5) / 5.5);
+    return 0.42 * std::cos(2.0 * M_PI * (t - 11.0) / 20.0);
+  };
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    TiltRecord record = still_record(force_at(0.0, 0.0), 0.02, 6000, seed);
+    for (std::size_t k = 0; k < record.time_s.size(); ++k)
+      record.accel_mps2[0][k] += accel_mps2(record.time_s[k]);
+    TiltOptions options = exact;
+    options.base = TiltBase::moving;
+    const TiltSolution solution = estimate_tilt(record, options).value();
+    EXPECT_GE(solution.rests.size(), 1U) << seed;
+    for (const TiltRest& rest : solution.rests)
+      EXPECT_LT(std::abs(rest.angles.pitch_rad->value), 0.01) << seed;
+  }
+}
+
 TEST(Tilt, SaysWhatTheBandOfAMovingBaseDoesNotHold) {
   TiltOptions options = exact;
   options.base = TiltBase::moving;

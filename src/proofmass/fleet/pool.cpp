@@ -40,8 +40,12 @@ void point_streams(const std::string& output, int errors) {
   ::_exit(1);
 }
 
-// Limits private writable memory; reserved addresses cost nothing.
+// Limits private writable memory; reserved addresses cost nothing, except those that the address
+// sanitizer reserves.
 void limit_memory(std::size_t bytes) {
+#ifdef __SANITIZE_ADDRESS__
+  bytes = 0;
+#endif
   if (bytes == 0) return;
   struct rlimit now{};
   if (::getrlimit(RLIMIT_DATA, &now) != 0) return;

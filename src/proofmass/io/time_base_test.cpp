@@ -260,6 +260,35 @@ TEST(TimeBase, FindsWhatIsLostBesideWholeTicks) {
   }
 }
 
+// As by a logger that is busy: single rows close to each other, and up to 30 at once.
+TEST(TimeBase, FindsBlocksOfLostRowsBesideWholeTicks) {
+  const auto is_lost = [](int k) {
+    const int block = k / 1501, at = k % 1501;
+    return at == 20 || at == 23 || (at >= 700 && at < 702 + 7 * block);
+  };
+  for (const double rate_hz : {681.3, 799.1, 833.7, 912.9}) {
+    std::vector<std::string> stamps;
+    for (int k = 0; k < 8000; ++k)
+      if (!is_lost(k)) stamps.push_back(fmt::format("{:.0f}", std::floor(1e3 * k / rate_hz)));
+    const auto read = read_text(table("t_ms", stamps));
+    ASSERT_TRUE(read.has_value());
+    EXPECT_NEAR(read->time.rate_hz, rate_hz, 1e-4 * rate_hz);
+    const auto grid = signal::even_grid(read->time, read->samples());
+    ASSERT_TRUE(grid.has_value());
+    EXPECT_EQ(grid->missing + stamps.size(), 8000U) << rate_hz;
+  }
+}
+
+// The stamps are those of 800 Hz exactly.
+TEST(TimeBase, ClaimsNoMoreThanARepeatingPatternOfStampsShows) {
+  constexpr double rate_hz = 800.003;
+  const auto read = read_text(table("t_ms", in_whole_ms(rate_hz, 8000, 0.0, 3)));
+  ASSERT_TRUE(read.has_value());
+  const double std_hz = signal::audit(*read).timing.rate_std_hz.value();
+  EXPECT_LT(std::abs(read->time.rate_hz - rate_hz), 2.0 * std_hz);
+  EXPECT_LT(std_hz, 0.02);
+}
+
 TEST(TimeBase, TakesNoLossForRounding) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     const auto read = read_text(table("t_ms", in_whole_ms(1000.0, 4000, 0.05, seed)));
