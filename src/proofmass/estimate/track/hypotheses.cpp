@@ -209,6 +209,37 @@ class Climb {
   std::map<Mask, double> seen_{};
 };
 
+/// A plateau whose level is within this angle of the interval before it may be a rest on a place
+/// that is not level: the magnitude of gravity does not separate them, and the velocities do by the
+/// model of tilt in motion alone, which an uneven floor does not obey.
+constexpr double cosine_of_a_tilt = 0.99939;  // 2°
+constexpr double least_of_tilts = 0.1;
+
+/// Gives the hypothesis in which such plateaus are rests at least a tenth of the probability of
+/// that in which they are not.
+void allow_for_tilts(const TrackSignal& signal, std::vector<StopHypothesis>& hypotheses) {
+  if (signal.axes.size() != 3 || signal.gravity != GravityContent::present) return;
+  const std::vector<RestLevel> levels = rest_levels(signal);
+  const std::size_t given = hypotheses.size();
+  for (std::size_t h = 0; h < given; ++h) {
+    std::vector<QuietStretch> tilted = hypotheses[h].stretches;
+    for (std::size_t i = 1; i < tilted.size(); ++i)
+      if (tilted[i] == QuietStretch::plateau &&
+          levels[i].cosine_to(levels[i - 1]) > cosine_of_a_tilt)
+        tilted[i] = QuietStretch::rest;
+    if (tilted == hypotheses[h].stretches) continue;
+    const double least = least_of_tilts * hypotheses[h].probability;
+    const auto same = std::ranges::find(hypotheses, tilted, &StopHypothesis::stretches);
+    if (same == hypotheses.end())
+      hypotheses.push_back({tilted, least});
+    else
+      same->probability = std::max(same->probability, least);
+  }
+  double sum = 0.0;
+  for (const StopHypothesis& one : hypotheses) sum += one.probability;
+  for (StopHypothesis& one : hypotheses) one.probability /= sum;
+}
+
 }  // namespace
 
 void drop_plateaus(TrackSignal& signal) {
@@ -276,6 +307,7 @@ std::vector<StopHypothesis> stop_hypotheses(const TrackSignal& signal,
   std::vector<StopHypothesis> hypotheses;
   for (const auto& [mask, log] : climb.seen())
     hypotheses.push_back({kinds_of(mask), std::exp(log - best) / sum});
+  allow_for_tilts(signal, hypotheses);
   std::ranges::sort(hypotheses, std::greater{}, &StopHypothesis::probability);
   std::erase_if(hypotheses, [](const StopHypothesis& one) { return one.probability < 1e-3; });
   return hypotheses;
