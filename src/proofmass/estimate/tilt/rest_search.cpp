@@ -106,18 +106,18 @@ void add_standing(const signal::Rest& rest,
   std::size_t first = rest.first;
   // The level changes without an edge: what is short beside it may be slow motion, too.
   const auto add = [&](std::size_t last) {
-    const bool is_part = first > rest.first || last < rest.last;
-    if (last + 1 >= first + (is_part ? 4 * shortest : shortest)) out.push_back({first, last});
+    const bool is_whole = first == rest.first && last == rest.last;
+    if (last + 1 >= first + shortest * (is_whole ? 1 : 4)) out.push_back({first, last});
   };
   for (std::size_t b = 0; b < blocks; ++b) {
-    if (!std::ranges::all_of(axes, [b](const BlockLevels& axis) { return axis.stands(b); })) {
-      const std::size_t cut = rest.first + b * block;
-      if (cut >= first + block) add(cut - block - 1);
-      first = cut + block;
-      for (BlockLevels& axis : axes) axis.begin();
+    if (std::ranges::all_of(axes, [b](const BlockLevels& axis) { return axis.stands(b); })) {
+      for (BlockLevels& axis : axes) axis.take(b);
       continue;
     }
-    for (BlockLevels& axis : axes) axis.take(b);
+    const std::size_t cut = rest.first + b * block;
+    if (cut >= first + block) add(cut - block - 1);
+    first = cut + block;
+    for (BlockLevels& axis : axes) axis.begin();
   }
   add(rest.last);
 }

@@ -215,6 +215,16 @@ class Climb {
 constexpr double cosine_of_a_tilt = 0.99939;  // 2°
 constexpr double least_of_tilts = 0.1;
 
+/// The same hypothesis with such plateaus as rests.
+std::vector<QuietStretch> with_tilts(std::vector<QuietStretch> stretches,
+                                     const std::vector<RestLevel>& levels) {
+  for (std::size_t i = 1; i < stretches.size(); ++i) {
+    const bool may_be_tilt = levels[i].cosine_to(levels[i - 1]) > cosine_of_a_tilt;
+    if (may_be_tilt && stretches[i] == QuietStretch::plateau) stretches[i] = QuietStretch::rest;
+  }
+  return stretches;
+}
+
 /// Gives the hypothesis in which such plateaus are rests at least a tenth of the probability of
 /// that in which they are not.
 void allow_for_tilts(const TrackSignal& signal, std::vector<StopHypothesis>& hypotheses) {
@@ -222,16 +232,11 @@ void allow_for_tilts(const TrackSignal& signal, std::vector<StopHypothesis>& hyp
   const std::vector<RestLevel> levels = rest_levels(signal);
   const std::size_t given = hypotheses.size();
   for (std::size_t h = 0; h < given; ++h) {
-    std::vector<QuietStretch> tilted = hypotheses[h].stretches;
-    for (std::size_t i = 1; i < tilted.size(); ++i)
-      if (tilted[i] == QuietStretch::plateau &&
-          levels[i].cosine_to(levels[i - 1]) > cosine_of_a_tilt)
-        tilted[i] = QuietStretch::rest;
-    if (tilted == hypotheses[h].stretches) continue;
+    std::vector<QuietStretch> tilted = with_tilts(hypotheses[h].stretches, levels);
     const double least = least_of_tilts * hypotheses[h].probability;
     const auto same = std::ranges::find(hypotheses, tilted, &StopHypothesis::stretches);
     if (same == hypotheses.end())
-      hypotheses.push_back({tilted, least});
+      hypotheses.push_back({std::move(tilted), least});
     else
       same->probability = std::max(same->probability, least);
   }
