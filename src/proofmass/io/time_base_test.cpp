@@ -248,16 +248,19 @@ TEST(TimeBase, FindsTheRateBehindStampsOfWholeTicks) {
   }
 }
 
+/// Of 8000 samples, those with these stamps in milliseconds are left.
+void expect_rate_and_loss(const std::vector<std::string>& stamps, double rate_hz) {
+  const auto read = read_text(table("t_ms", stamps));
+  ASSERT_TRUE(read.has_value());
+  EXPECT_NEAR(read->time.rate_hz, rate_hz, 1e-4 * rate_hz);
+  const auto grid = signal::even_grid(read->time, read->samples());
+  ASSERT_TRUE(grid.has_value());
+  EXPECT_EQ(grid->missing + stamps.size(), 8000U) << rate_hz;
+}
+
 TEST(TimeBase, FindsWhatIsLostBesideWholeTicks) {
-  for (const double rate_hz : {680.0, 700.0, 833.0, 952.0}) {
-    const std::vector<std::string> stamps = in_whole_ms(rate_hz, 8000, 0.002, 2);
-    const auto read = read_text(table("t_ms", stamps));
-    ASSERT_TRUE(read.has_value());
-    EXPECT_NEAR(read->time.rate_hz, rate_hz, 1e-4 * rate_hz);
-    const auto grid = signal::even_grid(read->time, read->samples());
-    ASSERT_TRUE(grid.has_value());
-    EXPECT_EQ(grid->missing + stamps.size(), 8000U) << rate_hz;
-  }
+  for (const double rate_hz : {680.0, 700.0, 833.0, 952.0})
+    expect_rate_and_loss(in_whole_ms(rate_hz, 8000, 0.002, 2), rate_hz);
 }
 
 // As by a logger that is busy: single rows close to each other, and up to 30 at once.
@@ -270,12 +273,7 @@ TEST(TimeBase, FindsBlocksOfLostRowsBesideWholeTicks) {
     std::vector<std::string> stamps;
     for (int k = 0; k < 8000; ++k)
       if (!is_lost(k)) stamps.push_back(fmt::format("{:.0f}", std::floor(1e3 * k / rate_hz)));
-    const auto read = read_text(table("t_ms", stamps));
-    ASSERT_TRUE(read.has_value());
-    EXPECT_NEAR(read->time.rate_hz, rate_hz, 1e-4 * rate_hz);
-    const auto grid = signal::even_grid(read->time, read->samples());
-    ASSERT_TRUE(grid.has_value());
-    EXPECT_EQ(grid->missing + stamps.size(), 8000U) << rate_hz;
+    expect_rate_and_loss(stamps, rate_hz);
   }
 }
 

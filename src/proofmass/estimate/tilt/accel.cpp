@@ -20,7 +20,7 @@ constexpr double effective_dof = 10.0;
 constexpr double least_accel = 2e-3;
 // Longest correlation time, and the same relative to the memory of the mean, which removes what is
 // slower.
-constexpr double longest_s = 2.0, longest_of_memory = 0.4;
+constexpr double usual_longest_s = 2.0, longest_of_memory = 0.4;
 
 // Departures of the force, rotated to one static frame for the autocorrelation.
 struct Departures {
@@ -102,8 +102,8 @@ BaseAccel base_accel_over(const TiltInstants& instants,
     out.cov_m2ps4.push_back(scatter.covariance(known.gravity_mps2, known.norm_std_mps2) + least);
   }
   const double step_s = median(steps).value_or(0.01);
-  const double longest = std::max(longest_s, longest_of_memory * mean_memory_s);
-  out.time_s = std::max(correlation_time(departures, step_s, longest), 0.5 * step_s);
+  const double longest_s = std::max(usual_longest_s, longest_of_memory * mean_memory_s);
+  out.time_s = std::max(correlation_time(departures, step_s, longest_s), 0.5 * step_s);
   out.reading_std_mps2 = std::max(
       1e-4 * known.gravity_mps2, std::numbers::sqrt2 / 2.0 * robust_std(differences).value_or(0.0));
   return out;

@@ -122,10 +122,13 @@ void add_standing(const signal::Rest& rest,
   add(rest.last);
 }
 
-// True if the level of a rest of this length changes by more than a sensor's drift in that time,
+// True if the level of a rest of this duration changes by more than a sensor's drift in that time,
 // and clearly by more than noise: a slow motion or acceleration.
-bool creeps(
-    View<double> axis, const signal::Rest& rest, std::size_t block, double noise, double s) {
+bool creeps(View<double> axis,
+            const signal::Rest& rest,
+            std::size_t block,
+            double noise,
+            double duration_s) {
   constexpr double sure = 6.0, drift_time_s = 60.0;
   const std::vector<double> means = block_means(axis, rest, block);
   const Moments all = moments(means);
@@ -133,7 +136,7 @@ bool creeps(
   const double white = noise / std::sqrt(static_cast<double>(block));
   const double by_noise = square(noise_of_means(means, white));
   const auto count = static_cast<double>(all.count);
-  const double drift = bias_change_mps2 * std::sqrt(std::min(1.0, s / drift_time_s));
+  const double drift = bias_change_mps2 * std::sqrt(std::min(1.0, duration_s / drift_time_s));
   return all.squares > (count + sure * std::sqrt(2.0 * count)) * by_noise &&
          square(all.std()) - by_noise > square(drift);
 }
@@ -177,13 +180,13 @@ void drop_slow_motion(const TiltRecord& record, signal::RestSearch& found) {
   const double rate_hz = usual_rate_hz(record.time_s);
   const std::size_t block = std::max<std::size_t>(1, found.window / 2);
   std::erase_if(found.rests, [&](const signal::Rest& rest) {
-    const double length_s = static_cast<double>(rest.last - rest.first + 1) / rate_hz;
+    const double duration_s = static_cast<double>(rest.last - rest.first + 1) / rate_hz;
     std::size_t row = 0;
     bool is_smooth = true;
     for (const auto& axis : record.accel_mps2) {
       if (axis.empty()) continue;
       const double noise = found.noise_std[row++];
-      if (creeps(axis, rest, block, noise, length_s)) return true;
+      if (creeps(axis, rest, block, noise, duration_s)) return true;
       is_smooth = is_smooth && left_of_polynomial(axis, rest) <= square(edge * noise);
     }
     return is_smooth;

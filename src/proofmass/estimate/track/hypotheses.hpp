@@ -30,6 +30,8 @@ void drop_plateaus(TrackSignal& signal);
 /// - Prior: an interval between others is a rest nine times in ten, the first and the last 999
 ///   times in 1000; a cruise has a speed of about 0.3, 3 or 30 m/s; it is usually, and a rest
 ///   seldom, louder than the quietest interval.
+/// - A plateau within 2° of the interval before it may be a rest on a place that is not level: the
+///   hypothesis with a rest there has at least a tenth of its probability.
 /// - Constant speed of the frame is not distinguishable from rest: only these priors separate a
 ///   recording that ends in motion from one that began in motion.
 ///

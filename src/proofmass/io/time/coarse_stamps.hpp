@@ -23,7 +23,8 @@ struct CoarseStamps {
 /// - nullopt if fewer than 99 % of the intervals are whole multiples of the median, if more than
 ///   half of the intervals are odd, or if the odd ones are too few to decide.
 /// - nullopt also if fewer than 12 % repeat the previous stamp and the tick is more than one unit
-///   of the last digit (rows written twice).
+///   of the last digit (rows written twice), or if the tick is within 5 % of the period and fewer
+///   than 95 % of the runs of rows agree.
 ///
 /// steps: the positive intervals, of any of the stamps.
 [[nodiscard]] std::optional<CoarseStamps> find_coarse_stamps(View<double> stamps,

@@ -15,9 +15,8 @@ constexpr std::size_t most_blocks = 256;
 /// estimated with Bartlett weights over `lags` lags of n residuals, evenly spaced over x in (−1,
 /// 1).
 ///
-/// - Bias: residuals have the covariance σ²(δ_ij − (1 + 3 x_i x_j)/n), weighted by x² in the sum
-/// over
-///   the lags, which removes the fraction 2.8 lags/n of the variance.
+/// - Bias: residuals have the covariance σ²(δ_ij − (1 + 3 x_i x_j)/n). In the sum over the lags,
+///   with weights x², this removes the fraction 2.8 lags/n of the variance.
 /// - Scatter: the weights x² reduce the number of residuals to 5n/9, and the estimate has
 ///   3/2 · 5n/9 / lags degrees of freedom (M. B. Priestley, Spectral Analysis and Time Series
 ///   (1981), 6.2.4, at zero frequency): Student's t in place of the normal distribution.

@@ -89,9 +89,8 @@ void HoleFinder::decide(bool is_end, std::vector<Hole>& holes) {
 // Samples missing before the one at this index of the recent ones, which follows a long interval.
 //
 // - By the interval, if it is a whole number of periods to within a fourth; otherwise by the
-// medians
-//   of up to `nearby` stamps on either side, relative to an even grid, as far as no other long
-//   interval follows: these average out the jitter of the two stamps.
+//   medians of up to `nearby` stamps on either side, relative to an even grid, as far as no other
+//   long interval follows: these average out the jitter of the two stamps.
 // - At most as many as are missing in all of `nearby` stamps on either side, other long intervals
 //   included: after late stamps others follow early.
 double HoleFinder::missing_before(std::size_t at) const {
