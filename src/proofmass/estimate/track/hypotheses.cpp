@@ -209,31 +209,55 @@ class Climb {
   std::map<Mask, double> seen_{};
 };
 
-/// A plateau whose level is within this angle of the interval before it may be a rest on a place
-/// that is not level: the magnitude of gravity does not separate them, and the velocities do by the
-/// model of tilt in motion alone, which an uneven floor does not obey.
-constexpr double cosine_of_a_tilt = 0.99939;  // 2°
-constexpr double least_of_tilts = 0.1;
+double duration_s(const std::vector<InertialEpoch>& knots, std::size_t first, std::size_t end) {
+  double sum = 0.0;
+  for (std::size_t k = first; k < end; ++k) sum += knots[k].dt_s;
+  return sum;
+}
 
-/// The same hypothesis with such plateaus as rests.
-std::vector<QuietStretch> with_tilts(std::vector<QuietStretch> stretches,
-                                     const std::vector<RestLevel>& levels) {
-  for (std::size_t i = 1; i < stretches.size(); ++i) {
-    const bool may_be_tilt = levels[i].cosine_to(levels[i - 1]) > cosine_of_a_tilt;
-    if (may_be_tilt && stretches[i] == QuietStretch::plateau) stretches[i] = QuietStretch::rest;
+/// Probability that the velocities of plateaus cancel between two rests, if the plateaus are rests
+/// on places that are not level. Their velocities then have the size of the tilts times the time on
+/// the plateaus; in the motions between, over tilts of the same size, the velocity is uncertain by
+/// these times the duration of the motions.
+double chance_of_closing(const std::vector<QuietStretch>& kinds,
+                         const std::vector<StretchKnots>& stretches,
+                         const std::vector<InertialEpoch>& knots) {
+  double chance = 1.0, plateaus_s2 = 0.0, motions_s2 = 0.0;
+  for (std::size_t i = 1; i < kinds.size(); ++i) {
+    const double motion_s = duration_s(knots, stretches[i - 1].end, stretches[i].first);
+    motions_s2 += motion_s * motion_s;
+    if (kinds[i] == QuietStretch::plateau) {
+      const double plateau_s = duration_s(knots, stretches[i].first, stretches[i].end);
+      plateaus_s2 += plateau_s * plateau_s;
+    }
+    if (kinds[i] != QuietStretch::rest) continue;
+    if (plateaus_s2 > motions_s2) chance *= std::sqrt(motions_s2 / plateaus_s2);
+    plateaus_s2 = motions_s2 = 0.0;
   }
+  return chance;
+}
+
+/// The same hypothesis with its plateaus as rests.
+std::vector<QuietStretch> with_tilts(std::vector<QuietStretch> stretches) {
+  std::ranges::replace(stretches, QuietStretch::plateau, QuietStretch::rest);
   return stretches;
 }
 
-/// Gives the hypothesis in which such plateaus are rests at least a tenth of the probability of
-/// that in which they are not.
-void allow_for_tilts(const TrackSignal& signal, std::vector<StopHypothesis>& hypotheses) {
+/// A plateau may be a rest on a place that is not level: the magnitude of gravity does not separate
+/// the two (drop_plateaus), and the velocities do by the model of tilt in motion alone, which an
+/// uneven floor does not obey. The hypothesis with rests keeps a tenth of the probability of the one
+/// with plateaus, times that of velocities that cancel by chance.
+void allow_for_tilts(const TrackSignal& signal,
+                     const std::vector<StretchKnots>& stretches,
+                     const std::vector<InertialEpoch>& knots,
+                     std::vector<StopHypothesis>& hypotheses) {
+  constexpr double least_of_tilts = 0.1;
   if (signal.axes.size() != 3 || signal.gravity != GravityContent::present) return;
-  const std::vector<RestLevel> levels = rest_levels(signal);
   const std::size_t given = hypotheses.size();
   for (std::size_t h = 0; h < given; ++h) {
-    std::vector<QuietStretch> tilted = with_tilts(hypotheses[h].stretches, levels);
-    const double least = least_of_tilts * hypotheses[h].probability;
+    std::vector<QuietStretch> tilted = with_tilts(hypotheses[h].stretches);
+    const double least = least_of_tilts * hypotheses[h].probability *
+                         chance_of_closing(hypotheses[h].stretches, stretches, knots);
     const auto same = std::ranges::find(hypotheses, tilted, &StopHypothesis::stretches);
     if (same == hypotheses.end())
       hypotheses.push_back({std::move(tilted), least});
@@ -312,7 +336,7 @@ std::vector<StopHypothesis> stop_hypotheses(const TrackSignal& signal,
   std::vector<StopHypothesis> hypotheses;
   for (const auto& [mask, log] : climb.seen())
     hypotheses.push_back({kinds_of(mask), std::exp(log - best) / sum});
-  allow_for_tilts(signal, hypotheses);
+  allow_for_tilts(signal, stretches, knots, hypotheses);
   std::ranges::sort(hypotheses, std::greater{}, &StopHypothesis::probability);
   std::erase_if(hypotheses, [](const StopHypothesis& one) { return one.probability < 1e-3; });
   return hypotheses;

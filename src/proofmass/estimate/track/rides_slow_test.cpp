@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <functional>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <ostream>
 #include <string>
 
@@ -12,6 +13,8 @@ namespace {
 
 using rides::Draw;
 using rides::Ride;
+
+constexpr double degree = std::numbers::pi / 180.0;
 
 struct Kind {
   std::string name;
@@ -48,6 +51,14 @@ INSTANTIATE_TEST_SUITE_P(
         Kind{"shaken along one axis", rides::shaken, 0.75},
         Kind{"slide within the noise", rides::slow_slide, 0.5},
         Kind{"slow strokes, short rests", rides::slow_strokes},
+        Kind{"train", [](Draw& draw) { return rides::train(draw, 0.0); }},
+        Kind{"train, vibration 3 times", [](Draw& draw) { return rides::train(draw, 3.0); }},
+        Kind{"floor of 0.3 degrees",
+             [](Draw& draw) { return rides::over_a_floor(draw, 0.3 * degree); }},
+        Kind{"floor of 1 degree", [](Draw& draw) { return rides::over_a_floor(draw, degree); },
+             0.5},
+        Kind{"floor of 3 degrees",
+             [](Draw& draw) { return rides::over_a_floor(draw, 3.0 * degree); }, 0.4},
         Kind{"strokes of 0.3 s", [](Draw& draw) { return rides::strokes(draw, 0.3); }},
         Kind{"strokes of 0.45 s", [](Draw& draw) { return rides::strokes(draw, 0.45); }},
         Kind{"strokes of 0.8 s", [](Draw& draw) { return rides::strokes(draw, 0.8); }}));

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include "proofmass/estimate/track/rides_test_support.hpp"
 
@@ -28,6 +29,23 @@ TEST(TrackRides, ACartAtConstantSpeedDoesNotRest) {
   const auto held = rides::held_by(rides::cart, 1, 12);
   expect_held(held);
   EXPECT_LT(held.rms_m(), 0.2);
+}
+
+// On a tilted place the level is that of a constant acceleration, and its magnitude is that of
+// gravity in both cases. These recordings had results off by 23, 19 and 8 standard deviations.
+TEST(TrackRides, ARestOnATiltedPlaceIsNoConstantAcceleration) {
+  const auto over_a_floor = [](Draw& draw) {
+    return rides::over_a_floor(draw, 3.0 * std::numbers::pi / 180.0);
+  };
+  for (const std::uint64_t first : {84u, 85u, 92u}) {
+    const rides::Held held = rides::held_by(over_a_floor, first, 1);
+    EXPECT_EQ(held.given, held.held) << first;
+  }
+}
+
+// The velocities of both constant accelerations cancel, those of two tilts would not.
+TEST(TrackRides, TheConstantAccelerationOfATrainIsNoTiltedPlace) {
+  expect_held(rides::held_by([](Draw& draw) { return rides::train(draw, 1.0); }, 1, 6));
 }
 
 // A frame moving at constant speed is equivalent to one at rest.

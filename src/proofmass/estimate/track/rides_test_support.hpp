@@ -43,6 +43,7 @@ struct Ride {
   std::size_t axis = 2;
   double noise_mps2 = 0.03;
   double moving_noise_mps2 = 0.0;  ///< additional noise while the speed is not 0
+  double floor_tilt_rad = 0.0;     ///< root mean square, about an axis across the motion
 };
 
 struct RideRecord {
@@ -73,7 +74,30 @@ inline double done(double s, double eased) {
   return std::lerp(table[i], table[i + 1], at - static_cast<double>(i));
 }
 
-/// At 100 Hz, with biases of some cm/s² and gravity along z.
+/// The tilt of a floor as a function of the position: four waves of 0.7 to 6 m.
+class Floor {
+ public:
+  Floor(double tilt_rad, Draw& draw) {
+    if (tilt_rad == 0.0) return;
+    for (Wave& wave : waves_)
+      wave = {tilt_rad * std::numbers::sqrt2 / 2.0, 2.0 * std::numbers::pi / draw.between(0.7, 6.0),
+              2.0 * std::numbers::pi * draw.between(0.0, 1.0)};
+  }
+  [[nodiscard]] double tilt_rad(double position_m) const {
+    double sum = 0.0;
+    for (const Wave& wave : waves_)
+      sum += wave.amplitude_rad * std::sin(wave.per_m * position_m + wave.phase_rad);
+    return sum;
+  }
+
+ private:
+  struct Wave {
+    double amplitude_rad = 0.0, per_m = 0.0, phase_rad = 0.0;
+  };
+  std::array<Wave, 4> waves_{};
+};
+
+/// At 100 Hz, with biases of some cm/s² and gravity along z where the floor is level.
 inline RideRecord record(const Ride& ride, Draw& draw) {
   constexpr double step_s = 1e-3;
   constexpr int each = 10;
@@ -86,7 +110,7 @@ inline RideRecord record(const Ride& ride, Draw& draw) {
   }
   std::array<double, 3> level{};
   for (double& bias : level) bias = 0.05 * draw.normal();
-  level[2] += standard_gravity_mps2;
+  const Floor floor(ride.floor_tilt_rad, draw);
   RideRecord out;
   out.sensor.name = "ride";
   for (std::size_t k = 1; k + 1 < speed.size(); ++k) {
@@ -95,8 +119,11 @@ inline RideRecord record(const Ride& ride, Draw& draw) {
     out.sensor.time_s.push_back(static_cast<double>(k) * step_s);
     const double accel = (speed[k + 1] - speed[k - 1]) / (2.0 * step_s);
     const double shaking = speed[k] != 0.0 ? ride.moving_noise_mps2 : 0.0;
+    const double tilt_rad = floor.tilt_rad(out.displacement_m);
+    std::array<double, 3> force{0.0, 0.0, standard_gravity_mps2 * std::cos(tilt_rad)};
+    force[ride.axis] += accel + standard_gravity_mps2 * std::sin(tilt_rad);
     for (std::size_t a = 0; a < 3; ++a)
-      out.sensor.accel_mps2[a].push_back(level[a] + (a == ride.axis ? accel : 0.0) +
+      out.sensor.accel_mps2[a].push_back(level[a] + force[a] +
                                          std::hypot(ride.noise_mps2, shaking) * draw.normal());
   }
   return out;
@@ -127,6 +154,21 @@ inline Ride cart(Draw& draw) {
                {draw.between(2.0, 10.0), speed},
                {draw.between(0.5, 1.0), 0.0, 1.0},
                {draw.between(2.0, 4.0), 0.0}};
+  return ride;
+}
+
+/// One ride on a level track, as quiet while the acceleration is constant as at rest or louder.
+inline Ride train(Draw& draw, double ratio) {
+  Ride ride;
+  ride.axis = 0;
+  ride.noise_mps2 = draw.between(0.01, 0.03);
+  ride.moving_noise_mps2 = ratio * ride.noise_mps2;
+  const double speed = draw.between(5.0, 20.0) * draw.sign();
+  ride.legs = {{draw.between(5.0, 10.0), 0.0},
+               {std::abs(speed) / draw.between(0.4, 1.1), speed, 0.2},
+               {draw.between(10.0, 40.0), speed},
+               {std::abs(speed) / draw.between(0.4, 1.1), 0.0, 0.2},
+               {draw.between(5.0, 10.0), 0.0}};
   return ride;
 }
 
@@ -198,6 +240,24 @@ inline Ride slow_strokes(Draw& draw) {
     ride.legs.push_back({half_s, (i % 2 == 0 ? 0.4 : -0.4) / half_s, 1.0});
     ride.legs.push_back({half_s, 0.0, 1.0});
     ride.legs.push_back({i < 7 ? 1.2 : 3.0, 0.0});
+  }
+  return ride;
+}
+
+/// Two to six strokes of 0.3 to 1.5 m over a floor that is not level.
+inline Ride over_a_floor(Draw& draw, double tilt_rad) {
+  Ride ride;
+  ride.axis = 0;
+  ride.noise_mps2 = draw.between(0.005, 0.03);
+  ride.floor_tilt_rad = tilt_rad;
+  ride.legs.push_back({draw.between(2.0, 4.0), 0.0});
+  const int count = static_cast<int>(draw.between(2.0, 7.0));
+  for (int i = 0; i < count; ++i) {
+    const double half_s = 0.5 * draw.between(1.5, 4.0);
+    const double speed = draw.between(0.3, 1.5) / half_s * draw.sign();
+    ride.legs.push_back({half_s, speed, 1.0});
+    ride.legs.push_back({half_s, 0.0, 1.0});
+    ride.legs.push_back({draw.between(1.5, 3.0), 0.0});
   }
   return ride;
 }
