@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <unistd.h>
 #include <vector>
 
@@ -164,6 +165,10 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
   folder() = std::filesystem::exists("/dev/shm") ? "/dev/shm" : "/tmp";
   folder() += "/proofmass-fuzz-XXXXXX";
   require(::mkdtemp(folder().data()) != nullptr);
+  std::atexit([] {
+    std::error_code failed;
+    std::filesystem::remove_all(folder(), failed);
+  });
   require(std::freopen("/dev/null", "w", stdout) != nullptr);
   return 0;
 }

@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "proofmass/core/contract.hpp"
@@ -95,14 +96,46 @@ Eigen::VectorXd non_negative_minimiser(const Eigen::MatrixXd& A, const Eigen::Ve
   return problem.scale.asDiagonal() * x;
 }
 
-PositiveInverse invert_positive(const Eigen::MatrixXd& A) {
+PositiveFactor::PositiveFactor(const Eigen::MatrixXd& A) {
   PM_EXPECTS(A.rows() == A.cols());
-  const ScaledProblem problem = scaled(A, Eigen::VectorXd::Zero(A.rows()));
-  const Eigen::LLT<Eigen::MatrixXd> factor(problem.A);
-  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(A.rows(), A.cols()));
-  const double scaled_log = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
-  return {problem.scale.asDiagonal() * inverse * problem.scale.asDiagonal(),
-          scaled_log - 2.0 * problem.scale.array().log().sum()};
+  ScaledProblem problem = scaled(A, Eigen::VectorXd::Zero(A.rows()));
+  L_ = Eigen::LLT<Eigen::MatrixXd>(std::move(problem.A)).matrixLLT();
+  scale_ = std::move(problem.scale);
+}
+
+Eigen::VectorXd PositiveFactor::solve(const Eigen::VectorXd& b) const {
+  const auto L = L_.triangularView<Eigen::Lower>();
+  return scale_.cwiseProduct(L.transpose().solve(L.solve(scale_.cwiseProduct(b))));
+}
+
+Eigen::VectorXd PositiveFactor::quadratic_forms(const Eigen::MatrixXd& X) const {
+  Eigen::MatrixXd columns = scale_.asDiagonal() * X.transpose();
+  L_.triangularView<Eigen::Lower>().solveInPlace(columns);
+  return columns.colwise().squaredNorm();
+}
+
+double PositiveFactor::log_determinant() const {
+  return 2.0 * L_.diagonal().array().log().sum() - 2.0 * scale_.array().log().sum();
+}
+
+Eigen::MatrixXd PositiveFactor::inverse() const {
+  const auto L = L_.triangularView<Eigen::Lower>();
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(L_.rows(), L_.cols());
+  L.solveInPlace(inverse);
+  L.transpose().solveInPlace(inverse);
+  return scale_.asDiagonal() * inverse * scale_.asDiagonal();
+}
+
+Eigen::MatrixXd weighted_gram(const Eigen::MatrixXd& X, const Eigen::VectorXd& w) {
+  const Eigen::MatrixXd rows = w.cwiseSqrt().asDiagonal() * X;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(X.cols(), X.cols());
+  gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  return gram.selfadjointView<Eigen::Lower>();
+}
+
+PositiveInverse invert_positive(const Eigen::MatrixXd& A) {
+  const PositiveFactor factor(A);
+  return {factor.inverse(), factor.log_determinant()};
 }
 
 Eigen::MatrixXd positive_inverse(const Eigen::MatrixXd& A) {

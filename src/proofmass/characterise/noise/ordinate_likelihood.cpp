@@ -22,9 +22,9 @@ constexpr double ordinates_converged = 1e-6;  // in log-likelihood, where 1.92 b
 struct State {
   ArrayXd S;
   VectorXd coefficients;
-  MatrixXd covariance;
+  PositiveFactor information;  // of the coefficients
   ArrayXd residual;
-  MatrixXd adjusting_covariance;
+  PositiveFactor adjusting_information;
   double log_likelihood = 0.0;
 };
 
@@ -50,19 +50,15 @@ class Ordinates {
     state.residual = z_.array();
     double data = S.log().sum();
     if (means_.fitted.cols() > 0) {
-      const MatrixXd WX = weight.asDiagonal() * means_.fitted;
-      const PositiveInverse information = invert_positive(means_.fitted.transpose() * WX);
-      state.covariance = information.inverse;
-      state.coefficients = state.covariance * (WX.transpose() * z_);
+      state.information = PositiveFactor(weighted_gram(means_.fitted, weight));
+      const VectorXd Wz = weight.cwiseProduct(z_);
+      state.coefficients = state.information.solve(means_.fitted.transpose() * Wz);
       state.residual -= (means_.fitted * state.coefficients).array();
     }
     data += (state.residual.square() / S).sum();
     if (means_.adjusting.cols() > 0) {
-      const MatrixXd information =
-          means_.adjusting.transpose() * (weight.asDiagonal() * means_.adjusting);
-      PositiveInverse inverse = invert_positive(information);
-      state.adjusting_covariance = std::move(inverse.inverse);
-      data += inverse.log_determinant;
+      state.adjusting_information = PositiveFactor(weighted_gram(means_.adjusting, weight));
+      data += state.adjusting_information.log_determinant();
     }
     state.log_likelihood = -0.5 * data;
     state.S = std::move(S);
@@ -73,10 +69,7 @@ class Ordinates {
   [[nodiscard]] VectorXd expected_squares(const State& state) const {
     VectorXd p = state.residual.square().matrix();
     if (means_.adjusting.cols() > 0)
-      p += (means_.adjusting * state.adjusting_covariance)
-               .cwiseProduct(means_.adjusting)
-               .rowwise()
-               .sum();
+      p += state.adjusting_information.quadratic_forms(means_.adjusting);
     return p;
   }
 
@@ -108,7 +101,7 @@ class Ordinates {
 
 OrdinateFit result_of(State state, VectorXd theta) {
   return {std::move(theta), state.S.matrix(), std::move(state.coefficients),
-          std::move(state.covariance), state.log_likelihood};
+          state.information.inverse(), state.log_likelihood};
 }
 
 }  // namespace
