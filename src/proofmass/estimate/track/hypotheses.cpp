@@ -245,8 +245,8 @@ std::vector<QuietStretch> with_tilts(std::vector<QuietStretch> stretches) {
 
 /// A plateau may be a rest on a place that is not level: the magnitude of gravity does not separate
 /// the two (drop_plateaus), and the velocities do by the model of tilt in motion alone, which an
-/// uneven floor does not obey. The hypothesis with rests keeps a tenth of the probability of the one
-/// with plateaus, times that of velocities that cancel by chance.
+/// uneven floor does not obey. The hypothesis with rests keeps a tenth of the probability of the
+/// one with plateaus, times that of velocities that cancel by chance.
 void allow_for_tilts(const TrackSignal& signal,
                      const std::vector<StretchKnots>& stretches,
                      const std::vector<InertialEpoch>& knots,
