@@ -114,10 +114,12 @@ std::vector<PoseSet> Choice::with_one_back(const PoseSet& out) {
   for (std::size_t member = 0; member < out.size(); ++member) {
     PoseSet others = out;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(member));
-    std::optional<PoseShifts::Shift> shift;
-    if (shifts.rss_without(others)) shift = shifts.without(others).shift_of(out[member]);
-    const double gain = shift ? shift->value * shift->value / shift->cofactor : 0.0;
-    by_gain.emplace_back(gain, std::move(others));
+    double gain = 0.0;
+    if (shifts.rss_without(others)) {
+      const auto shift = shifts.without(others).shift_of(out[member]);
+      if (shift && shift->cofactor > 0.0) gain = shift->value * shift->value / shift->cofactor;
+    }
+    by_gain.emplace_back(std::isnan(gain) ? 0.0 : gain, std::move(others));
   }
   std::ranges::sort(by_gain);
   by_gain.resize(std::min(by_gain.size(), most));

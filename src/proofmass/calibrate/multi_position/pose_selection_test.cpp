@@ -261,6 +261,13 @@ TEST(PoseSelection, NamesFourOfTwentyFourFromSubsets) {
   EXPECT_EQ(blame.wrongly, 0);
 }
 
+// Fifty are left out at first, of which thirty have to come back.
+TEST(PoseSelection, NamesTwentyOfTwoHundred) {
+  const Blame blame = blame_of(200, 20, 5.0 * mg, 2);
+  EXPECT_EQ(blame.named, 2 * 20);
+  EXPECT_EQ(blame.wrongly, 0);
+}
+
 TEST(PoseSelection, NamesNoneForNoiseThatIsLargerThanStated) {
   int named = 0;
   for (unsigned seed = 1; seed <= 100; ++seed) {
