@@ -67,5 +67,24 @@ TEST(PositiveInverse, KnowsADeterminantThatNoDoubleHolds) {
   EXPECT_NEAR(invert_positive(A).log_determinant, 10.0 * d.sum() * std::log(10.0), 1e-9);
 }
 
+// Against LU, which shares nothing with the factor, for columns of very different scales.
+TEST(PositiveFactor, SolvesAsLuDoes) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd X(20, 6);
+  for (double& x : X.reshaped()) x = normal(random);
+  X.col(2) *= 1e4;
+  const Eigen::VectorXd w = Eigen::VectorXd::LinSpaced(20, 0.0, 3.0);
+  const Eigen::MatrixXd gram = X.transpose() * w.asDiagonal() * X;
+  EXPECT_LT((weighted_gram(X, w) - gram).cwiseAbs().maxCoeff(), 1e-14 * gram.maxCoeff());
+  const PositiveFactor factor(gram);
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(6, -1.0, 2.0);
+  EXPECT_LT((gram * factor.solve(b) - b).cwiseAbs().maxCoeff(), 1e-10);
+  const Eigen::MatrixXd solved = solve(gram, X.transpose());
+  const Eigen::VectorXd forms = factor.quadratic_forms(X);
+  for (Eigen::Index k = 0; k < X.rows(); ++k)
+    EXPECT_NEAR(forms(k), X.row(k).dot(solved.col(k)), 1e-10) << k;
+}
+
 }  // namespace
 }  // namespace proofmass::linalg_test
