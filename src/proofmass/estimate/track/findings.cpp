@@ -100,10 +100,11 @@ void note_alternatives(TrackSolution& solution) {
                 one.displacement_m.value, one.probability,
                 where.empty() ? "all of them rest" : ("in motion " + where).c_str());
   }
-  solution.notes.push_back({Severity::bad,
-                            "rests cannot be distinguished from motion at constant speed: " + all +
-                                "; no displacement is given. State when the sensor was at rest",
-                            {Advice{"still"}, Advice{"rests", "ends"}}});
+  solution.notes.push_back(
+      {Severity::bad,
+       "rests cannot be distinguished from motion at constant speed or acceleration: " + all +
+           "; no displacement is given. State when the sensor was at rest",
+       {Advice{"still"}, Advice{"rests", "ends"}}});
 }
 
 // Errors in motion that are absent at rest are mostly gravity, as the sensor tilts.
