@@ -199,8 +199,10 @@ void average(PoseHypotheses& hypotheses, const std::vector<PoseSet>& alike, Pose
   now.fit.cofactor = cofactor;
 }
 
-// Those in all of the sets, and those in some.
-std::pair<PoseSet, PoseSet> in_all_and_some(const std::vector<PoseSet>& sets) {
+// The poses in all of the sets, or the first set if the others without those cannot be fitted; and
+// the further ones in some of the sets.
+std::pair<PoseSet, PoseSet> suspects_and_doubtful(const std::vector<PoseSet>& sets,
+                                                  PoseHypotheses& hypotheses) {
   PoseSet all = sets.front(), some = sets.front();
   for (const PoseSet& set : sets) {
     PoseSet both, either;
@@ -209,6 +211,7 @@ std::pair<PoseSet, PoseSet> in_all_and_some(const std::vector<PoseSet>& sets) {
     all = std::move(both);
     some = std::move(either);
   }
+  if (hypotheses.without(all) == nullptr) all = sets.front();
   PoseSet doubtful;
   std::ranges::set_difference(some, all, std::back_inserter(doubtful));
   return {std::move(all), std::move(doubtful)};
@@ -283,7 +286,7 @@ Result<PoseSelection> select_poses(const NormData& data,
   const Scatter unexplained = choice.scatter_without(out);
   const double room = clearly_worse * std::max(unexplained.factor, 1e-20);
   const std::vector<PoseSet> alike = hypotheses.alike(out, hypotheses.without(out)->rss + room);
-  auto [bad, doubtful] = in_all_and_some(alike);
+  auto [bad, doubtful] = suspects_and_doubtful(alike, hypotheses);
   now.alike = std::move(doubtful);
   for (const std::size_t k : bad) now.suspect[k] = true;
   if (options.keep_suspects) bad.clear();
