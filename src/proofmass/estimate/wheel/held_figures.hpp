@@ -12,7 +12,7 @@
 #include "proofmass/estimate/wheel/settle.hpp"
 
 // The uncertainty of a fit due to the parameters that its passes hold: lever arms, delay, rolling
-// radius.
+// radius, warm-up.
 namespace proofmass::estimate {
 
 /// Between the first epoch and the last, from the state after the last.
@@ -68,11 +68,11 @@ inline void widen(Run& change, const Run& other) {
 }
 
 /// Contribution of the parameters that the passes hold: the lever arms, the delay of the sensors'
-/// filters and the rolling radius; the last two are not reliably determined by any likelihood. The
-/// smoother is repeated with the parameter changed by a share of its standard deviation, and the
-/// differences are extrapolated linearly. For the rolling radius of a vehicle, which may be
-/// anything from 0 on, both ends of the range are taken: the skew of a wheel with a ripple changes
-/// three times as much from 0 to 0.1 m as from there to 0.4 m.
+/// filters, the rolling radius and a warm-up; delay and rolling radius are not reliably determined
+/// by any likelihood. The smoother is repeated with the parameter changed by a share of its
+/// standard deviation, and the differences are extrapolated linearly. For the rolling radius of a
+/// vehicle, which may be anything from 0 on, both ends of the range are taken: the skew of a wheel
+/// with a ripple changes three times as much from 0 to 0.1 m as from there to 0.4 m.
 template <int S>
 class HeldFigures {
  public:
@@ -82,7 +82,7 @@ class HeldFigures {
         about_(about),
         levers_(levers_of(about, readings)),
         base_(run_at(model(), settled.prior)),
-        base_places_(places_of(model())) {}
+        base_levers_(pass_of(model())) {}
 
   /// Returns false if a run's angle slips relative to the fit's, however small the step: the
   /// differences are then meaningless, and the fit invalid.
@@ -93,7 +93,7 @@ class HeldFigures {
       if (!change) return false;
       add(*change, fit);
     }
-    return add_rolling_radius(fit);
+    return add_rolling_radius(fit) && add_warm_up(fit);
   }
 
  private:
@@ -133,6 +133,59 @@ class HeldFigures {
     return true;
   }
 
+  /// A warm-up of the biases, as far as the recording does not exclude it: if the speed increases
+  /// steadily, it resembles the centripetal force of a longer lever arm.
+  [[nodiscard]] bool add_warm_up(WheelFit& fit) const {
+    // Of a long recording it affects the first part only, and the walk of the biases absorbs it.
+    constexpr double longest_s = 600.0;
+    const double duration_s = readings_.time_s.back() - readings_.time_s.front();
+    if (duration_s > longest_s) return true;
+    const SymmetricEigen axes = symmetric_eigen(warm_up_information());
+    for (int i = 0; i < 2 * S; ++i) {
+      const Mat<2 * S> along = axes.vectors.col(i) / std::sqrt(axes.values(i));
+      const auto moved = [&](double share) {
+        Run run = run_anew(warmed_by(share * along));
+        for (int axis = 0; axis < 2 * S; ++axis)
+          run.constants(bias_of(axis)) += share * warmed_up(duration_s) * along(axis);
+        return run;
+      };
+      const auto change = change_by(moved, 1.0);
+      if (!change) return false;
+      add(*change, fit);
+    }
+    return true;
+  }
+
+  /// That of the warm-ups as further states, s⁴/m²: from what they change in the innovations of the
+  /// pass with lever arms, and from the prior. Source: B. Friedland, IEEE Transactions on Automatic
+  /// Control 14 (1969) 359.
+  [[nodiscard]] Eigen::MatrixXd warm_up_information() const {
+    constexpr double step_mps2 = 0.01;
+    const auto innovations = [](const FoundPlaces& pass) {
+      return Eigen::Map<const Eigen::ArrayXf>(pass.innovations.data(),
+                                              static_cast<Eigen::Index>(pass.innovations.size()));
+    };
+    Eigen::MatrixXf effect(base_levers_.innovations.size(), 2 * S);
+    for (int axis = 0; axis < 2 * S; ++axis) {
+      const FoundPlaces pass = pass_of(warmed_by(step_mps2 * Mat<2 * S>::Unit(axis)));
+      const auto by = static_cast<float>(1.0 / (step_mps2 * settled_.widened(bias_of(axis))));
+      const Eigen::ArrayXf change = by * (innovations(pass) - innovations(base_levers_));
+      effect.col(axis) = change.isFinite().select(change, 0.0F);
+    }
+    return (effect.transpose() * effect).template cast<double>() +
+           Eigen::MatrixXd::Identity(2 * S, 2 * S) / square(warm_up_std_mps2);
+  }
+
+  [[nodiscard]] WheelModel<S> warmed_by(const Mat<2 * S>& final_mps2) const {
+    auto warmed = model();
+    warmed.warm_up_mps2 = final_mps2;
+    return warmed;
+  }
+  /// Of the constants, the bias of this axis of all sensors' axes.
+  static int bias_of(int axis) {
+    return wheel::first_of(axis / 2) - wheel::first_of(0) + wheel::bias + axis % 2;
+  }
+
   /// The lever arms are estimated anew with the changed parameter.
   [[nodiscard]] std::optional<Run> change_by(double WheelModel<S>::* figure,
                                              double std,
@@ -140,11 +193,14 @@ class HeldFigures {
     const auto moved = [&](double part) {
       auto other = model();
       other.*figure += part * std;
-      WheelPrior prior = settled_.prior;
-      *prior.places += places_of(other) - base_places_;
-      return run_at(other, prior);
+      return run_anew(other);
     };
     return change_by(moved, share);
+  }
+  [[nodiscard]] Run run_anew(const WheelModel<S>& changed) const {
+    WheelPrior prior = settled_.prior;
+    *prior.places += pass_of(changed).mean - base_levers_.mean;
+    return run_at(changed, prior);
   }
 
   /// A run that slips is tried again with a smaller share; nullopt if that slips, too.
@@ -165,8 +221,8 @@ class HeldFigures {
   [[nodiscard]] WheelModel<S> model() const {
     return held_model<S>(readings_, settled_.noise, about_);
   }
-  [[nodiscard]] Places places_of(const WheelModel<S>& model) const {
-    return places_by_levers(model, levers_, settled_.prior, settled_.belief).mean;
+  [[nodiscard]] FoundPlaces pass_of(const WheelModel<S>& model) const {
+    return places_by_levers(model, levers_, settled_.prior, settled_.belief);
   }
 
   /// Whether the run's angle slips.
@@ -201,7 +257,7 @@ class HeldFigures {
   const WheelPath& about_;
   WheelLevers levers_;
   Run base_;
-  Places base_places_;
+  FoundPlaces base_levers_;
 };
 
 /// Adds the contribution of the held parameters, from runs on the averaged measurements, since

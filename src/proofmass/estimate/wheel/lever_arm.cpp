@@ -1,3 +1,4 @@
+#include <limits>
 #include <optional>
 
 #include "proofmass/core/linalg.hpp"
@@ -169,9 +170,18 @@ FoundPlaces places_by_levers(WheelModel<S> model,
                              WheelPrior prior,
                              const PlacesPrior& belief) {
   auto state = free_places(model, levers, std::move(prior), belief);
-  filter(model, 0, model.size(), wheel_gate, state, [](std::size_t, const auto&) {});
-  return {state.x.mean.template tail<2 * S>(),
-          state.x.cov.template bottomRightCorner<2 * S, 2 * S>()};
+  FoundPlaces found;
+  filter(model, 0, model.size(), wheel_gate, state, [&](std::size_t, const auto& step) {
+    for (int i = 0; i < step.count; ++i) {
+      const auto& update = step.updates[static_cast<std::size_t>(i)];
+      const double off = update.innovation / std::sqrt(update.expected);
+      found.innovations.push_back(update.used ? static_cast<float>(off)
+                                              : std::numeric_limits<float>::quiet_NaN());
+    }
+  });
+  found.mean = state.x.mean.template tail<2 * S>();
+  found.cov = state.x.cov.template bottomRightCorner<2 * S, 2 * S>();
+  return found;
 }
 
 template <int S>

@@ -34,6 +34,7 @@ WheelModel<S> wheel_model(const WheelReadings& readings, const WheelNoise& noise
   model.orders = readings.orders;
   model.noise = noise;
   model.instants = &readings.instants;
+  model.time_s = &readings.time_s;
   if (readings.encoder) model.encoder = &*readings.encoder;
   for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
     model.readings[s] = &readings.sensors[s];
@@ -209,6 +210,8 @@ struct FoundPlaces {
   Places mean;
   Eigen::MatrixXd cov;
   double log_likelihood = 0.0;
+  /// Of places_by_levers(): innovations in standard deviations, NaN where rejected.
+  std::vector<float> innovations{};
 };
 
 /// Maximum-likelihood lever arms, with all else integrated out by the filter. Ripple within a turn

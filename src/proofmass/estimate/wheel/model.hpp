@@ -104,6 +104,14 @@ inline constexpr double ripple_walk_psd = 1e-7;
 /// weight than this.
 inline constexpr double gyro_bias_walk_psd = 1e-7, gyro_scale_walk_psd = 1e-6;
 
+/// A warm-up of a bias as a fraction of its final value, and the prior standard deviation of that
+/// value: some 5 mg within a minute, as of a sensor that is switched on with the recorder.
+inline constexpr double warm_up_std_mps2 = 0.05;
+[[nodiscard]] inline double warmed_up(double since_start_s) {
+  constexpr double time_constant_s = 30.0;
+  return 1.0 - std::exp(-since_start_s / time_constant_s);
+}
+
 /// Measurements of one sensor in the plane of the wheel, SI.
 struct PlanarReadings {
   std::vector<double> u_mps2, v_mps2;  ///< NaN where missing
@@ -205,6 +213,10 @@ struct WheelModel {
   RippleOrders orders = first_orders;  ///< of the ripple, cycles a turn
   bool with_gyro = false;
   bool sensors_stand = false;  ///< constant biases and gyroscope parameters
+  /// Final value of the warm-up along u and v of each sensor, not part of its bias. It is 0 but
+  /// where its effect on the other parameters is computed.
+  Mat<2 * Sensors> warm_up_mps2 = Mat<2 * Sensors>::Zero();
+  const std::vector<double>* time_s = nullptr;  ///< of each epoch
 
   [[nodiscard]] std::size_t size() const { return instants->size(); }
   [[nodiscard]] int active() const {
@@ -335,6 +347,11 @@ struct WheelModel {
       u.value = sensor.u_mps2[at];
       v.value = sensor.v_mps2[at];
       u.variance = v.variance = sensor.variance_m2ps4[at];
+      if (!warm_up_mps2.isZero()) {
+        const double share = warmed_up((*time_s)[k] - time_s->front());
+        u.value -= share * warm_up_mps2(2 * s);
+        v.value -= share * warm_up_mps2(2 * s + 1);
+      }
       if (has_speed(index, k)) {
         read_gyro(at_state, now, s, out);
         auto& speed = out.rows[first + 2];
