@@ -100,6 +100,31 @@ Settled<S> settle(WheelReadings& readings,
   return {model.noise, prior, found.cov, {}, std::move(moved), likeliest.log_likelihood};
 }
 
+/// The model's orders on the residuals of a path.
+template <int S>
+std::array<RippleFit, wheel::ripple_orders> fit_orders(const WheelModel<S>& model,
+                                                       const WheelPath& path) {
+  std::array<RippleFit, wheel::ripple_orders> fits;
+  typename WheelModel<S>::State x = WheelModel<S>::State::Zero();
+  x.template tail<wheel::standing(S)>() = path.standing;
+  Readings<wheel::states(S), WheelModel<S>::channels> out;
+  for (std::size_t k = 0; k < model.size(); ++k) {
+    x.template head<wheel::moving>() = path.moving[k];
+    model.measure(x, k, out);
+    const double turned = std::abs(path.moving[k](wheel::speed)) * (*model.instants)[k].dt_s;
+    for (std::size_t o = 0; o < fits.size(); ++o) {
+      // Beyond half a cycle between measurements an order is aliased.
+      if (!(model.orders[o] * turned < std::numbers::pi)) continue;
+      const int at = wheel::ripple(S) + 2 * static_cast<int>(o);
+      for (int i = 0; i < out.count - out.constraints; ++i) {
+        const auto& row = out.rows[static_cast<std::size_t>(i)];
+        fits[o].add(row.h.template segment<2>(at), row.value - row.predicted);
+      }
+    }
+  }
+  return fits;
+}
+
 }  // namespace
 
 std::size_t instants_of_first_turn(const WheelPath& path) {
@@ -112,34 +137,18 @@ std::size_t instants_of_first_turn(const WheelPath& path) {
 
 template <int S>
 RippleOrders orders_in(const WheelReadings& readings, const WheelPath& path) {
-  using Model = WheelModel<S>;
-  constexpr int at = wheel::ripple(S);
-  Model model = held_model<S>(readings, {}, path);
-  std::array<RippleFit, highest_order + 1> fits{};
-  auto x = Model::State::Zero().eval();
-  x.template tail<wheel::standing(S)>() = path.standing;
-  Readings<Model::states, Model::channels> out;
+  WheelModel<S> model = held_model<S>(readings, {}, path);
+  std::array<double, highest_order + 1> explained{};
   for (const RippleOrders& tried : {RippleOrders{3, 4, 5, 6}, {7, 8, 9, 10}, {9, 10, 11, 12}}) {
     model.orders = tried;
-    for (const int n : tried) fits[static_cast<std::size_t>(n)] = {};
-    for (std::size_t k = 0; k < model.size(); ++k) {
-      x.template head<wheel::moving>() = path.moving[k];
-      model.measure(x, k, out);
-      const double turned = std::abs(path.moving[k](wheel::speed)) * readings.instants[k].dt_s;
-      for (int i = 0; i < out.count - out.constraints; ++i) {
-        const auto& row = out.rows[static_cast<std::size_t>(i)];
-        for (std::size_t o = 0; o < tried.size(); ++o)
-          // Beyond half a cycle between measurements an order is aliased.
-          if (tried[o] * turned < std::numbers::pi)
-            fits[static_cast<std::size_t>(tried[o])].add(
-                row.h.template segment<2>(at + 2 * static_cast<int>(o)), row.value - row.predicted);
-      }
-    }
+    const auto fits = fit_orders(model, path);
+    for (std::size_t o = 0; o < tried.size(); ++o)
+      explained[static_cast<std::size_t>(tried[o])] = fits[o].explained();
   }
   std::array<int, highest_order - 2> others{};
   std::iota(others.begin(), others.end(), 3);
-  const auto explained = [&](int n) { return fits[static_cast<std::size_t>(n)].explained(); };
-  std::ranges::stable_sort(others, std::ranges::greater{}, explained);
+  std::ranges::stable_sort(others, std::ranges::greater{},
+                           [&](int n) { return explained[static_cast<std::size_t>(n)]; });
   return {1, 2, others[0], others[1]};
 }
 
