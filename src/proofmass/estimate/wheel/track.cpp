@@ -1,4 +1,5 @@
 #include <limits>
+#include <span>
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/statistics.hpp"
@@ -78,6 +79,35 @@ Beginning seek_beginning(const WheelReadings& readings, const WheelNoise& noise)
   return best;
 }
 
+/// Appends the average of one sensor's measurements at these epochs. Returns its row, no_row if it
+/// has none.
+std::int64_t append_average(const PlanarReadings& sensor,
+                            std::size_t index,
+                            std::span<const WheelInstant> epochs,
+                            PlanarReadings& out) {
+  double u = 0.0, v = 0.0, variance = 0.0, count = 0.0, speed = 0.0, speeds = 0.0;
+  for (const WheelInstant& epoch : epochs) {
+    const std::int64_t row = epoch.row[index];
+    const auto at = static_cast<std::size_t>(row);
+    if (row == WheelInstant::no_row || !sensor.has(at)) continue;
+    u += sensor.u_mps2[at];
+    v += sensor.v_mps2[at];
+    variance += sensor.variance_m2ps4[at];
+    count += 1.0;
+    if (sensor.speed_radps.empty() || std::isnan(sensor.speed_radps[at])) continue;
+    speed += sensor.speed_radps[at];
+    speeds += 1.0;
+  }
+  if (count == 0.0) return WheelInstant::no_row;
+  out.u_mps2.push_back(u / count);
+  out.v_mps2.push_back(v / count);
+  out.variance_m2ps4.push_back(variance / (count * count));
+  if (!sensor.speed_radps.empty())
+    out.speed_radps.push_back(speeds > 0.0 ? speed / speeds
+                                           : std::numeric_limits<double>::quiet_NaN());
+  return static_cast<std::int64_t>(out.u_mps2.size()) - 1;
+}
+
 }  // namespace
 
 double WheelReadings::rate_hz() const {
@@ -101,56 +131,32 @@ double WheelReadings::rate_hz() const {
 
 WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
   PM_EXPECTS(each >= 1);
-  WheelReadings out{readings.gravity_mps2,
-                    readings.gravity_std_mps2,
-                    readings.given_rolling_radius_m,
-                    readings.found_rolling_radius_m,
-                    readings.rolling_radius_m,
-                    readings.delay_s,
-                    readings.phase_rad,
-                    readings.orders,
-                    readings.one_speed,
-                    readings.shakes,
-                    {},
-                    {},
-                    {},
-                    {}};
+  WheelReadings out{.gravity_mps2 = readings.gravity_mps2,
+                    .gravity_std_mps2 = readings.gravity_std_mps2,
+                    .given_rolling_radius_m = readings.given_rolling_radius_m,
+                    .found_rolling_radius_m = readings.found_rolling_radius_m,
+                    .rolling_radius_m = readings.rolling_radius_m,
+                    .delay_s = readings.delay_s,
+                    .phase_rad = readings.phase_rad,
+                    .orders = readings.orders,
+                    .one_speed = readings.one_speed,
+                    .shakes = readings.shakes,
+                    .time_s = {},
+                    .instants = {},
+                    .sensors = std::vector<PlanarReadings>(readings.sensors.size())};
   if (readings.encoder) out.encoder = averaged(*readings.encoder, readings.time_s, each);
-  out.sensors.resize(readings.sensors.size());
-  for (std::size_t first = 0; first < readings.instants.size(); first += each) {
-    const std::size_t last = std::min(first + each, readings.instants.size());
-    WheelInstant instant;
-    instant.stands = true;
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s)
+    out.sensors[s].speed_variance = readings.sensors[s].speed_variance / static_cast<double>(each);
+  const std::span all(readings.instants);
+  for (std::size_t first = 0; first < all.size(); first += each) {
+    const auto epochs = all.subspan(first, std::min(each, all.size() - first));
     double time_s = 0.0;
-    for (std::size_t k = first; k < last; ++k) {
-      time_s += readings.time_s[k] / static_cast<double>(last - first);
-      instant.stands = instant.stands && readings.instants[k].stands;
-    }
-    for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
-      const PlanarReadings& sensor = readings.sensors[s];
-      double u = 0.0, v = 0.0, variance = 0.0, count = 0.0, speed = 0.0, speeds = 0.0;
-      for (std::size_t k = first; k < last; ++k) {
-        const std::int64_t row = readings.instants[k].row[s];
-        const auto at = static_cast<std::size_t>(row);
-        if (row == WheelInstant::no_row || !sensor.has(at)) continue;
-        u += sensor.u_mps2[at];
-        v += sensor.v_mps2[at];
-        variance += sensor.variance_m2ps4[at];
-        count += 1.0;
-        if (sensor.speed_radps.empty() || std::isnan(sensor.speed_radps[at])) continue;
-        speed += sensor.speed_radps[at];
-        speeds += 1.0;
-      }
-      if (count == 0.0) continue;
-      instant.row[s] = static_cast<std::int64_t>(out.sensors[s].u_mps2.size());
-      out.sensors[s].u_mps2.push_back(u / count);
-      out.sensors[s].v_mps2.push_back(v / count);
-      out.sensors[s].variance_m2ps4.push_back(variance / (count * count));
-      if (sensor.speed_radps.empty()) continue;
-      out.sensors[s].speed_radps.push_back(speeds > 0.0 ? speed / speeds
-                                                        : std::numeric_limits<double>::quiet_NaN());
-      out.sensors[s].speed_variance = sensor.speed_variance / static_cast<double>(each);
-    }
+    for (std::size_t k = first; k < first + epochs.size(); ++k)
+      time_s += readings.time_s[k] / static_cast<double>(epochs.size());
+    WheelInstant instant;
+    instant.stands = std::ranges::all_of(epochs, &WheelInstant::stands);
+    for (std::size_t s = 0; s < readings.sensors.size(); ++s)
+      instant.row[s] = append_average(readings.sensors[s], s, epochs, out.sensors[s]);
     instant.dt_s = out.time_s.empty() ? 0.0 : time_s - out.time_s.back();
     out.time_s.push_back(time_s);
     out.instants.push_back(instant);
