@@ -497,6 +497,17 @@ TEST(EstimateWheel, OfAnUprightAxleIsNotObservableEvenWhereTheAxisIsLookedFor) {
   EXPECT_EQ(upright.error().code, Errc::not_observable);
 }
 
+// The search took ten seconds and ended with a lost angle, its covariances below the smallest
+// normal number.
+TEST(EstimateWheel, DataFarBelowGravityAreNotInMetresPerSecondSquared) {
+  WheelSensor sensor = record(lively, {}, 60.0, 12);
+  for (auto& axis : sensor.accel_mps2)
+    for (double& value : axis) value *= 1e-13;
+  const auto tiny = estimate_wheel({sensor}, {});
+  ASSERT_FALSE(tiny.has_value());
+  EXPECT_NE(tiny.error().message.find("data not in m/s²"), std::string::npos);
+}
+
 TEST(EstimateWheel, OnATiltedAxleTakesTheGravityThatIsLeft) {
   const auto solution = solve({record(lively, {}, 60.0, 12, {.axle_tilt_rad = 0.4})});
   expect_turns(solution, lively.turns(0.0, 9.0), 0.004);

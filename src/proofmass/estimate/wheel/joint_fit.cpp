@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/rests.hpp"
 
 namespace proofmass::estimate {
@@ -142,6 +143,22 @@ bool has_lost(const WheelFit& fit, double begun_lost) {
   return fit.track.lost > 0.1 + 1.5 * begun_lost;
 }
 
+/// Of the force in the plane, m²/s⁴.
+double mean_square(const PlanarReadings& readings) {
+  Moments squares;
+  for (std::size_t row = 0; row < readings.u_mps2.size(); ++row)
+    if (readings.has(row)) squares.add(square(readings.u_mps2[row]) + square(readings.v_mps2[row]));
+  return squares.mean;
+}
+
+Error no_gravity_in(const WheelSensor& sensor) {
+  return {Errc::not_observable,
+          sensor.name +
+              ": no rotation of gravity in the plane of the wheel (axle vertical, "
+              "data not in m/s², or not a wheel)",
+          {Advice{"unit"}, Advice{"spin-axis"}}};
+}
+
 Result<Single> fit_single(const WheelSensor& sensor,
                           Prepared prepared,
                           FitDepth depth,
@@ -150,6 +167,8 @@ Result<Single> fit_single(const WheelSensor& sensor,
   single.readings = merge({&sensor}, {&single.prepared}, 0.0, options);
   if (single.readings.instants.size() < 10)
     return Error{Errc::too_few_samples, sensor.name + ": fewer than 10 usable rows"};
+  if (mean_square(single.readings.sensors.front()) < square(0.05 * standard_gravity_mps2))
+    return no_gravity_in(sensor);
   single.readings.delay_s = delay_of(options, single.readings.rate_hz());
   if (options.progress) options.progress("looking for the wheel's phase", 0.0);
   const double fastest = fastest_radps(single.readings.rate_hz());
@@ -188,11 +207,7 @@ Result<Single> fit_single(const WheelSensor& sensor,
                      "between samples, or vibrates too strongly; record at a higher rate, or "
                      "analyse a part of the recording",
                  {Advice{"from"}, Advice{"to"}}};
-  return Error{Errc::not_observable,
-               sensor.name +
-                   ": no rotation of gravity in the plane of the wheel (axle vertical, "
-                   "data not in m/s², or not a wheel)",
-               {Advice{"unit"}, Advice{"spin-axis"}}};
+  return no_gravity_in(sensor);
 }
 
 Result<Single> fit_single(const WheelSensor& sensor, FitDepth depth, const WheelOptions& options) {
