@@ -138,15 +138,14 @@ class HeldFigures {
   [[nodiscard]] bool add_warm_up(WheelFit& fit) const {
     // Of a long recording it affects the first part only, and the walk of the biases absorbs it.
     constexpr double longest_s = 600.0;
-    const double duration_s = readings_.time_s.back() - readings_.time_s.front();
-    if (duration_s > longest_s) return true;
+    if (readings_.time_s.back() - readings_.time_s.front() > longest_s) return true;
     const SymmetricEigen axes = symmetric_eigen(warm_up_information());
     for (int i = 0; i < 2 * S; ++i) {
       const Mat<2 * S> along = axes.vectors.col(i) / std::sqrt(axes.values(i));
       const auto moved = [&](double share) {
         Run run = run_anew(warmed_by(share * along));
         for (int axis = 0; axis < 2 * S; ++axis)
-          run.constants(bias_of(axis)) += share * warmed_up(duration_s) * along(axis);
+          run.constants(bias_of(axis)) += share * along(axis);
         return run;
       };
       const auto change = change_by(moved, 1.0);

@@ -104,12 +104,12 @@ inline constexpr double ripple_walk_psd = 1e-7;
 /// weight than this.
 inline constexpr double gyro_bias_walk_psd = 1e-7, gyro_scale_walk_psd = 1e-6;
 
-/// A warm-up of a bias as a fraction of its final value, and the prior standard deviation of that
-/// value: some 5 mg within a minute, as of a sensor that is switched on with the recorder.
+/// A warm-up of a bias, as a fraction of its value at the end of the recording, and the prior
+/// standard deviation of that value. A time constant as long as the recording resembles a ramp of
+/// the speed most.
 inline constexpr double warm_up_std_mps2 = 0.05;
-[[nodiscard]] inline double warmed_up(double since_start_s) {
-  constexpr double time_constant_s = 30.0;
-  return 1.0 - std::exp(-since_start_s / time_constant_s);
+[[nodiscard]] inline double warmed_up(double share_of_recording) {
+  return std::expm1(-share_of_recording) / std::expm1(-1.0);
 }
 
 /// Measurements of one sensor in the plane of the wheel, SI.
@@ -213,7 +213,7 @@ struct WheelModel {
   RippleOrders orders = first_orders;  ///< of the ripple, cycles a turn
   bool with_gyro = false;
   bool sensors_stand = false;  ///< constant biases and gyroscope parameters
-  /// Final value of the warm-up along u and v of each sensor, not part of its bias. It is 0 but
+  /// Warm-up at the end, along u and v of each sensor, not part of its bias. It is 0 but
   /// where its effect on the other parameters is computed.
   Mat<2 * Sensors> warm_up_mps2 = Mat<2 * Sensors>::Zero();
   const std::vector<double>* time_s = nullptr;  ///< of each epoch
@@ -348,7 +348,8 @@ struct WheelModel {
       v.value = sensor.v_mps2[at];
       u.variance = v.variance = sensor.variance_m2ps4[at];
       if (!warm_up_mps2.isZero()) {
-        const double share = warmed_up((*time_s)[k] - time_s->front());
+        const double share =
+            warmed_up(((*time_s)[k] - time_s->front()) / (time_s->back() - time_s->front()));
         u.value -= share * warm_up_mps2(2 * s);
         v.value -= share * warm_up_mps2(2 * s + 1);
       }
