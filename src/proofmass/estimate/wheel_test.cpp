@@ -122,9 +122,9 @@ TEST(EstimateWheel, FindsRadiusMountingBiasAndScaleWhereTheSpeedChanges) {
   EXPECT_FALSE(any_says(solution.not_observable, "record a second speed"));
 }
 
-// While the speed increases, a warm-up resembles the centripetal force of a longer lever arm:
-// radius and biases were off by three standard deviations and more. Where the speed also decreases
-// it does not, and they are as certain as without.
+// While the speed increases, a warm-up resembles the centripetal force of a longer lever arm, and
+// the radius was off by more than 2.5 standard deviations. Where the speed also decreases it does
+// not, and the biases are certain.
 TEST(EstimateWheel, AWarmUpOverARampIsInTheIntervals) {
   constexpr double duration_s = 30.0;
   const auto fitted = [](const Drive& drive) {

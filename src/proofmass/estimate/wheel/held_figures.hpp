@@ -136,7 +136,7 @@ class HeldFigures {
   /// A warm-up of the biases, as far as the recording does not exclude it: if the speed increases
   /// steadily, it resembles the centripetal force of a longer lever arm.
   [[nodiscard]] bool add_warm_up(WheelFit& fit) const {
-    // Of a long recording it affects the first part only, and the walk of the biases absorbs it.
+    // A longer recording determines the drift better, and the random walk of the biases covers it.
     constexpr double longest_s = 600.0;
     if (readings_.time_s.back() - readings_.time_s.front() > longest_s) return true;
     const SymmetricEigen axes = symmetric_eigen(warm_up_information());
@@ -180,7 +180,7 @@ class HeldFigures {
     warmed.warm_up_mps2 = final_mps2;
     return warmed;
   }
-  /// Of the constants, the bias of this axis of all sensors' axes.
+  /// Index of a bias among the constants; the axes are u and v of each sensor in turn.
   static int bias_of(int axis) {
     return wheel::first_of(axis / 2) - wheel::first_of(0) + wheel::bias + axis % 2;
   }

@@ -143,7 +143,7 @@ bool has_lost(const WheelFit& fit, double begun_lost) {
   return fit.track.lost > 0.1 + 1.5 * begun_lost;
 }
 
-/// Of the force in the plane, m²/s⁴.
+/// Mean square of the force in the plane of the wheel, m²/s⁴.
 double mean_square(const PlanarReadings& readings) {
   Moments squares;
   for (std::size_t row = 0; row < readings.u_mps2.size(); ++row)

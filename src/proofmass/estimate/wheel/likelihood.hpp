@@ -210,7 +210,7 @@ struct FoundPlaces {
   Places mean;
   Eigen::MatrixXd cov;
   double log_likelihood = 0.0;
-  /// Of places_by_levers(): innovations in standard deviations, NaN where rejected.
+  /// Innovations in standard deviations, NaN where rejected; set by places_by_levers() only.
   std::vector<float> innovations{};
 };
 
