@@ -136,7 +136,7 @@ class HeldFigures {
   /// A warm-up of the biases, as far as the recording does not exclude it: if the speed increases
   /// steadily, it resembles the centripetal force of a longer lever arm.
   [[nodiscard]] bool add_warm_up(WheelFit& fit) const {
-    // A longer recording determines the drift better, and the random walk of the biases covers it.
+    // For the time of these runs; a drift over a longer ramp is not covered.
     constexpr double longest_s = 600.0;
     if (readings_.time_s.back() - readings_.time_s.front() > longest_s) return true;
     const SymmetricEigen axes = symmetric_eigen(warm_up_information());
