@@ -21,7 +21,7 @@ pm::estimate::WheelSensor sensor_of(const pm::Recording& recording, const std::s
   for (std::size_t k = 0; k < recording.samples(); ++k)
     sensor.time_s.push_back(recording.time.at(k));
   sensor.accel_mps2 = {
-      recording.find(name + "_x")->values, recording.find(name + "_y")->values, {}};
+      recording.find(name + "_x")->values.copy(), recording.find(name + "_y")->values.copy(), {}};
   return sensor;
 }
 

@@ -28,12 +28,13 @@ pm::Recording powered_up(unsigned seed, double duration_s) {
   recording.time.source = pm::TimeSource::given_rate;
   recording.time.rate_hz = rate_hz;
   recording.channels.push_back({"acc_x", pm::parse_unit("m/s^2").value(), {}});
+  std::vector<double>& values = recording.channels[0].values.edit();
   for (double t_s = 0.0; t_s < duration_s; t_s += 1.0 / rate_hz)
-    recording.channels[0].values.push_back(0.01 - 0.05 * std::expm1(-t_s / 200.0) + normal(bits));
+    values.push_back(0.01 - 0.05 * std::expm1(-t_s / 200.0) + normal(bits));
   return recording;
 }
 
-double mean(const std::vector<double>& values, double from_s, double to_s) {
+double mean(pm::View<double> values, double from_s, double to_s) {
   double sum = 0.0, count = 0.0;
   for (double k = std::ceil(from_s * rate_hz); k < to_s * rate_hz; k += 1.0, count += 1.0)
     sum += values[static_cast<std::size_t>(k)];

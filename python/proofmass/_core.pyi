@@ -58,6 +58,7 @@ def of_arrays(
     times_s: Optional[_Doubles],
     start_ns: Optional[int],
     words: list[str],
+    copy: bool,
 ) -> Recording: ...
 def is_unit(text: str) -> bool: ...
 def run(

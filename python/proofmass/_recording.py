@@ -126,8 +126,9 @@ class Recording:
         names: Optional[Sequence[str]] = None,
         source: str = "array",
         start_ns: Optional[int] = None,
+        copy: bool = True,
     ) -> "Recording":
-        """Make a recording from arrays, which are copied.
+        """Make a recording from arrays.
 
         Parameters
         ----------
@@ -147,6 +148,9 @@ class Recording:
             Name used in errors and documents.
         start_ns : int, optional
             Absolute time of the first sample.
+        copy : bool
+            False: use the memory of contiguous arrays of doubles, which must not change as long as
+            the recording is used. The analyses do so with arrays that are passed to them.
 
         Raises
         ------
@@ -173,7 +177,7 @@ class Recording:
         table = [(name, known.get(name, ""), values) for name, values in columns.items()]
         arguments = ["inspect", "arrays", *_options.words({"rate_hz": rate_hz, "unit": unit})]
         try:
-            return cls(_core.of_arrays(source, table, times, start_ns, arguments))
+            return cls(_core.of_arrays(source, table, times, start_ns, arguments, copy))
         except Error as error:
             raise _options.in_python(error) from None
 
@@ -186,12 +190,13 @@ class Recording:
         time: Optional[str] = None,
         unit: Optional[str] = None,
         source: str = "DataFrame",
+        copy: bool = True,
     ) -> "Recording":
-        """Make a recording from the numeric columns of a DataFrame, which are copied.
+        """Make a recording from the numeric columns of a DataFrame.
 
         The time is the column `time`, or one named time, time_s or t, or an index of dates or durations
         or with such a name; otherwise `rate_hz` is required. A unit may follow a column's name,
-        "acc_x (m/s^2)", or be given in ``frame.attrs["units"]``.
+        "acc_x (m/s^2)", or be given in ``frame.attrs["units"]``. `copy` as in `from_arrays`.
 
         Examples
         --------
@@ -219,7 +224,14 @@ class Recording:
             raise ArgumentError(f"{source}: has no column of numbers beside the time")
         units = {name: text for name, text in units.items() if name in columns and text}
         return cls.from_arrays(
-            columns, rate_hz=rate_hz, time_s=times, unit=unit, units=units, source=source, start_ns=start_ns
+            columns,
+            rate_hz=rate_hz,
+            time_s=times,
+            unit=unit,
+            units=units,
+            source=source,
+            start_ns=start_ns,
+            copy=copy,
         )
 
     @property

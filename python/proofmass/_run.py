@@ -88,10 +88,10 @@ def _input(item: Any) -> Any:
 def _made(item: Any, options: dict[str, Any]) -> Recording:
     rate_hz, unit, time = (options.get(name) for name in ("rate_hz", "unit", "time"))
     if hasattr(item, "columns"):
-        return Recording.from_pandas(item, rate_hz=rate_hz, time=time, unit=unit)
+        return Recording.from_pandas(item, rate_hz=rate_hz, time=time, unit=unit, copy=False)
     if time is not None:
         raise ArgumentError("time: an array has no named columns: give rate_hz, or a Recording")
-    return Recording.from_arrays(item, rate_hz=rate_hz, unit=unit)
+    return Recording.from_arrays(item, rate_hz=rate_hz, unit=unit, copy=False)
 
 
 def _free_name(name: str, taken: dict[str, Any]) -> str:

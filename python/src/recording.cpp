@@ -23,9 +23,22 @@ namespace {
 
 using Doubles = py::array_t<double, py::array::c_style>;
 
-std::vector<double> values_of(const Doubles& array) {
-  const std::span values(array.data(), static_cast<std::size_t>(array.size()));
+std::span<const double> values_of(const Doubles& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+std::vector<double> copy_of(const Doubles& array) {
+  const std::span values = values_of(array);
   return {values.begin(), values.end()};
+}
+
+// Keeps the array alive. Its last user may be a thread without the interpreter's lock.
+Samples borrowed(const Doubles& array) {
+  const std::shared_ptr<const Doubles> owner(new Doubles(array), [](const Doubles* last) {
+    const py::gil_scoped_acquire lock;
+    delete last;
+  });
+  return Samples::borrowed(values_of(array), owner);
 }
 
 // Reads as the command `inspect` does; its input flags are those of every verb.
@@ -46,19 +59,20 @@ Handle of_arrays(const std::string& source,
                  const std::vector<Column>& columns,
                  const std::optional<Doubles>& times_s,
                  std::optional<std::int64_t> start_ns,
-                 const std::vector<std::string>& words) {
+                 const std::vector<std::string>& words,
+                 bool copy) {
   std::vector<Channel> channels;
   for (const auto& [name, unit, values] : columns) {
     Channel& channel = channels.emplace_back();
     channel.name = name;
-    channel.values = values_of(values);
+    channel.values = copy ? Samples(copy_of(values)) : borrowed(values);
     if (unit.empty()) continue;
     const auto known = parse_unit(unit);
     if (!known) refuse(name + ": no unit \"" + unit + "\" is known");
     channel.unit = *known;
   }
   io::ArrayTimes times{.start_ns = start_ns, .column = "time"};
-  if (times_s) times.stamps_s = values_of(*times_s);
+  if (times_s) times.stamps_s = copy_of(*times_s);
   const app::Verb verb = parsed_verb(words);
   Result<Recording> made = io::recording_of_arrays(std::move(channels), std::move(times),
                                                    app::read_options(*verb.input, {}));
@@ -137,7 +151,7 @@ SharedRecording from_state(const py::dict& state) {
         {channel[0].cast<std::string>(),
          {static_cast<Quantity>(unit[0].cast<int>()), unit[1].cast<double>(),
           unit[2].cast<double>(), unit[3].cast<std::string>()},
-         values_of(channel[2].cast<Doubles>())});
+         copy_of(channel[2].cast<Doubles>())});
   }
   recording.time = time_from(state["time"].cast<py::tuple>());
   for (const py::handle item : state["notes"]) {

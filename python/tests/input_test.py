@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+import weakref
 
 import numpy as np
 import pandas as pd
@@ -270,6 +271,30 @@ def test_deviations_of_contiguous_doubles_take_no_copy_at_the_border():
     assert np.shares_memory(as_doubles(PLAIN, "x"), PLAIN)
     with pytest.raises(TypeError):  # the library does not convert its arguments
         _core.allan(["noise", "array", "--rate=1"], PLAIN.astype(np.float32), None)
+
+
+def test_recordings_copy_arrays_unless_told_otherwise():
+    assert not np.shares_memory(pm.Recording.from_arrays(PLAIN, rate_hz=10)["x"], PLAIN)
+    x = PLAIN.copy()
+    recording = pm.Recording.from_arrays(x, rate_hz=10, unit="g", copy=False)
+    assert np.shares_memory(recording["x"], x)
+    held = weakref.ref(x)
+    del x
+    assert held() is not None and np.array_equal(recording["x"], PLAIN)
+    del recording
+    assert held() is None
+
+
+def test_analyses_leave_their_arrays_as_they_were():
+    x = np.random.default_rng(7).normal(size=(3000, 3))
+    x[5, 0] = 3e34  # becomes missing
+    columns = {name: np.ascontiguousarray(x[:, k]) for k, name in enumerate(["acc_x", "acc_y", "acc_z"])}
+    before = {name: values.copy() for name, values in columns.items()}
+    pm.noise(columns, rate_hz=100, unit="g", temperature="acc_z")  # conversion to m/s^2, regression
+    pm.drift(columns, rate_hz=100, unit="g")
+    pm.inspect(columns, rate_hz=100, unit="g")
+    for name, values in columns.items():
+        assert np.array_equal(values, before[name])
 
 
 @pytest.mark.parametrize("kind", ["Tilt", "Track", "Wheel"])

@@ -53,7 +53,7 @@ Accelerometer read(const std::filesystem::path& file, const io::ReadOptions& opt
   for (const std::optional<std::size_t>& index : {triad.x, triad.y, triad.z}) {
     const Channel& channel = out.recording.channels.at(index.value());
     std::vector<double>& values = out.axis[axis];
-    values = channel.values;
+    values = channel.values.copy();
     if (channel.unit.quantity != Quantity::counts)
       for (double& value : values) value = channel.unit.si(value);
     out.lsb[axis++] = signal::find_lsb(values).value_or(0.0);

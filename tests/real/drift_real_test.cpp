@@ -73,7 +73,7 @@ std::vector<double> milli_g(const Axis& axis) {
   });
   EXPECT_NE(channel, recording.channels.end()) << axis.channel;
   if (channel == recording.channels.end()) return {};
-  std::vector<double> values = channel->values;
+  std::vector<double> values = channel->values.copy();
   for (double& value : values) value *= 1e3;
   return values;
 }
@@ -181,7 +181,7 @@ struct PowerUps {
       if (channel == nullptr) return;
       const auto grid = signal::even_grid(recording.time, recording.samples()).value();
       std::vector<double>& values =
-          series.emplace_back(signal::on_even_grid(channel->values, grid));
+          series.emplace_back(signal::on_even_grid(channel->values, grid).take());
       for (double& value : values) value *= 1e3;
       rate_hz.push_back(grid.rate_hz);
     }

@@ -37,7 +37,7 @@ estimate::DriveWheel wheel_of(const char* trial, int number) {
     wheel.sensor.time_s.push_back(begin_s + recording.time.at(k));
   const std::array accel{"Acc_X", "Acc_Y", "Acc_Z"}, rate{"Gyr_X", "Gyr_Y", "Gyr_Z"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    wheel.sensor.accel_mps2[axis] = recording.find(accel[axis])->values;
+    wheel.sensor.accel_mps2[axis] = recording.find(accel[axis])->values.copy();
     for (const double value : recording.find(rate[axis])->values)
       wheel.sensor.rate_radps[axis].push_back(value * rad_per_deg);
   }

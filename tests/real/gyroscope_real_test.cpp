@@ -20,8 +20,8 @@ namespace {
 using Axes = std::array<std::vector<double>, 3>;
 
 Axes axes_of(const Recording& recording) {
-  return {recording.channels.at(0).values, recording.channels.at(1).values,
-          recording.channels.at(2).values};
+  return {recording.channels.at(0).values.copy(), recording.channels.at(1).values.copy(),
+          recording.channels.at(2).values.copy()};
 }
 
 calibrate::GyroscopeCalibration imu_tk_fit(const std::filesystem::path& folder) {

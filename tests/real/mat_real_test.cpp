@@ -29,7 +29,7 @@ TEST_P(MatSpecimen, IsReadAsScipyReadsIt) {
   EXPECT_EQ(read->format, expected.format);
   ASSERT_EQ(read->channels.size(), expected.channels);
   EXPECT_EQ(read->samples(), expected.samples);
-  const Values& last = read->channels.back().values;
+  const Samples& last = read->channels.back().values;
   for (std::size_t k = 0; k < expected.last.size(); ++k)
     EXPECT_DOUBLE_EQ(last[k], expected.last[k]) << k;
 }

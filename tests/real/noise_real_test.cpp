@@ -52,7 +52,7 @@ std::vector<double> samples_of(const Axis& axis) {
                    [&](const Channel& c) { return c.name.starts_with(axis.channel); });
   EXPECT_NE(channel, recording.channels.end()) << axis.channel;
   if (channel == recording.channels.end()) return {};
-  std::vector<double> mg = channel->values;
+  std::vector<double> mg = channel->values.copy();
   for (double& value : mg) value *= 1e3;
   return mg;
 }

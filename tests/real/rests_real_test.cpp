@@ -48,7 +48,7 @@ Accelerometer read(const std::filesystem::path& file,
   Accelerometer read{.rate_hz = rate_hz};
   for (std::size_t a = 0; a < 3; ++a)
     for (const Channel& channel : recording.channels)
-      if (channel.name == names[a]) read.axis[a] = channel.values;
+      if (channel.name == names[a]) read.axis[a] = channel.values.copy();
   for (const std::vector<double>& values : read.axis) EXPECT_FALSE(values.empty()) << file;
   return read;
 }

@@ -35,7 +35,7 @@ std::vector<StaticAxis> axes_of(const Recording& recording) {
   std::vector<StaticAxis> axes;
   for (const Channel& channel : recording.channels) {
     if (channel.unit.quantity != Quantity::acceleration) continue;
-    axes.push_back({.name = channel.name, .accel_mps2 = channel.values});
+    axes.push_back({.name = channel.name, .accel_mps2 = channel.values.copy()});
     for (double& value : axes.back().accel_mps2) value *= standard_gravity_mps2;
   }
   return axes;
@@ -81,7 +81,8 @@ TEST(StaticItemsOfPublishedData, TellNoWarmUpOfAMinuteAfterAPowerUp) {
   const auto grid = signal::even_grid(recording.time, recording.samples()).value();
   std::vector<StaticAxis> axes = axes_of(recording);
   ASSERT_EQ(axes.size(), 3U);
-  for (StaticAxis& axis : axes) axis.accel_mps2 = signal::on_even_grid(axis.accel_mps2, grid);
+  for (StaticAxis& axis : axes)
+    axis.accel_mps2 = signal::on_even_grid(axis.accel_mps2, grid).take();
   const auto test = thesis::analyse_static(
       thesis::static_record(file.string(), grid.rate_hz, 0.0, std::move(axes)), {});
   ASSERT_TRUE(test) << test.error().message;

@@ -37,7 +37,7 @@ TEST_P(MotorAxis, IsBelowTheOtherFilterOnlineAndSmoothed) {
       published_data() / "mcar-motor-axis" / ("10_18_" + std::to_string(GetParam()) + ".dat.xz");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
   const Recording recording = io::read_recording(file.string(), {}).value();
-  const auto values = [&](const char* name) { return recording.find(name)->values; };
+  const auto values = [&](const char* name) { return recording.find(name)->values.copy(); };
   const std::vector<double> truth = values("column 5");
   const double other = error_deg(values("column 6"), truth);
   const auto solution = estimate::estimate_axis_tilt({.time_s = times_of(recording),
@@ -63,7 +63,7 @@ estimate::TiltRecord record_of(const std::filesystem::path& file, double to_mps2
   record.time_s = times_of(recording);
   const std::array axes{triad.x, triad.y, triad.z};
   for (std::size_t i = 0; i < 3; ++i) {
-    record.accel_mps2[i] = recording.channels[*axes[i]].values;
+    record.accel_mps2[i] = recording.channels[*axes[i]].values.copy();
     for (double& value : record.accel_mps2[i]) value *= to_mps2;
   }
   return record;

@@ -23,9 +23,8 @@ using estimate::TrackSolution;
 /// its x.
 TrackSensor sensor_of(const Recording& recording, std::size_t first, std::size_t last) {
   TrackSensor sensor;
-  const auto part = [&](const std::vector<double>& values) {
-    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(first),
-                               values.begin() + static_cast<std::ptrdiff_t>(last + 1));
+  const auto part = [&](const Samples& values) {
+    return std::vector<double>(values.begin() + first, values.begin() + last + 1);
   };
   for (std::size_t k = first; k <= last; ++k) sensor.time_s.push_back(recording.time.at(k));
   const std::vector<Triad> triads = accelerometer_triads(recording);
@@ -169,7 +168,7 @@ class Broad : public testing::Test {
   [[nodiscard]] std::size_t at(double time_s) const {
     return static_cast<std::size_t>(std::lround(time_s * recording_.time.rate_hz));
   }
-  [[nodiscard]] const std::vector<double>& truth(const char* axis) const {
+  [[nodiscard]] const Samples& truth(const char* axis) const {
     return recording_.find(std::string("opt_pos_") + axis)->values;
   }
   [[nodiscard]] const Recording& recording() const { return recording_; }
@@ -213,7 +212,7 @@ TEST_F(Broad, OnTheWayTheBandOfTheHeightCoversTheTruth) {
   TrackOptions options;
   options.axis = world_axes[2];
   const TrackSolution found = track(sensor_of(recording()), options);
-  const std::vector<double>& height = truth("z");
+  const Samples& height = truth("z");
   const double start = height[at(10.0)];
   double inside = 0.0, of = 0.0;
   for (std::size_t k = 0; k < height.size(); k += 10) {

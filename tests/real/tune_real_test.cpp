@@ -51,7 +51,7 @@ TEST(TunedAdis16405, HasTheDensityThatItsSpectrumHas) {
   const auto file = published_data() / "adis16405-static" / "adis16405_run1_acc_g.csv.xz";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
   const Recording recording = part_of(file, 100.0, 600.0);
-  std::vector<double> values = recording.channels[0].values;
+  std::vector<double> values = recording.channels[0].values.copy();
   for (double& value : values) value *= standard_gravity_mps2;
   const Tuning found = tuned(values, TuneModel::rest);
   // One-sided floor 0.524 mg/√Hz at 20 to 40 Hz; the building's lines add to the white noise.
@@ -74,8 +74,8 @@ TEST(TunedXsens, WalksOnOneAxisAndNotToBeSeenOnAnother) {
   for (const char* name : {"x", "z"}) {
     const Channel* channel = recording.find(name);
     ASSERT_NE(channel, nullptr) << name;
-    axes.push_back(tuned(channel->values, TuneModel::rest));
-    expect_summit(axes.back(), channel->values);
+    axes.push_back(tuned(channel->values.copy(), TuneModel::rest));
+    expect_summit(axes.back(), channel->values.copy());
   }
   EXPECT_NEAR(axes[0].parameters[0].value->value, 0.334, 0.02);  // counts/√Hz
   EXPECT_FALSE(axes[0].parameters[1].value.has_value());
@@ -90,7 +90,7 @@ TEST(TunedBarbell, MovesUpAndDownMoreThanSideways) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << absent(file);
   const Recording recording = io::read_recording(file.string(), {}).value();
   const auto jerk_psd = [&](const char* name) {
-    const Tuning found = tuned(recording.find(name)->values, TuneModel::pva);
+    const Tuning found = tuned(recording.find(name)->values.copy(), TuneModel::pva);
     return found.parameters[1].value ? found.parameters[1].value->value : 0.0;
   };
   const double up = jerk_psd("Linear Acceleration z"), sideways = jerk_psd("Linear Acceleration x");

@@ -47,7 +47,7 @@ WheelSensor sensor_of(const std::filesystem::path& file, std::int64_t origin_ns)
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Channel* channel = recording.find(names[axis]);
     EXPECT_NE(channel, nullptr) << file << " has no " << names[axis];
-    if (channel != nullptr) sensor.accel_mps2[axis] = channel->values;
+    if (channel != nullptr) sensor.accel_mps2[axis] = channel->values.copy();
   }
   return sensor;
 }

@@ -45,7 +45,7 @@ void add_axes(const Recording& recording,
   for (const auto& axis : {one.triad.x, one.triad.y, one.triad.z}) {
     if (!axis) continue;
     const Channel& channel = recording.channels[*axis];
-    axes.push_back(channel.values);
+    axes.push_back(channel.values.copy());
     out.axis_names.push_back(channel.name);
     out.sensor_of.push_back(sensor);
     known = known && channel.unit.quantity == Quantity::acceleration;

@@ -63,7 +63,7 @@ void expect_one_clock(const Recording& gyroscope, const Recording& accelerometer
 }
 
 std::vector<double> in_unit(const Channel& channel, const Unit& unit) {
-  std::vector<double> values = channel.values;
+  std::vector<double> values = channel.values.copy();
   if (unit.quantity != Quantity::counts)
     for (double& value : values) value = unit.si(value);
   return values;

@@ -175,9 +175,11 @@ void find_motion(double start_s,
     const auto first = channel;
     for (RestChannel& rest : recording.channels) {
       const auto& analysis = (channel++)->shown.analysis;
-      for (std::size_t k = 0; analysis && k < rest.series.size(); ++k) {
+      if (!analysis) continue;
+      std::vector<double>& series = rest.series.edit();
+      for (std::size_t k = 0; k < series.size(); ++k) {
         const double t_s = analysis->start_s + static_cast<double>(k) / rest.rate_hz;
-        rest.series[k] -= analysis->fit.curve.value(t_s);
+        series[k] -= analysis->fit.curve.value(t_s);
       }
     }
     find_share_at_rest(start_s, pointers_to(recording.channels));

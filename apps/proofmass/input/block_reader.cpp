@@ -73,7 +73,7 @@ void PieceSource::keep_window(const Block& raw) {
   const double from_s = flags_.from_s.value_or(-std::numeric_limits<double>::infinity());
   const double to_s = flags_.to_s.value_or(std::numeric_limits<double>::infinity());
   piece_.channels.resize(raw.channels.size());
-  for (Channel& channel : piece_.channels) channel.values.clear();
+  for (Channel& channel : piece_.channels) channel.values.edit().clear();
   piece_.time.stamps_s.clear();
   std::size_t kept = 0;
   for (std::size_t r = 0; r < raw.rows(); ++r) {
@@ -81,7 +81,7 @@ void PieceSource::keep_window(const Block& raw) {
     if (time_s < from_s || time_s >= to_s) continue;
     if (given_ + kept++ == 0) window_start_s_ = time_s;
     for (std::size_t c = 0; c < raw.channels.size(); ++c) {
-      piece_.channels[c].values.push_back(raw.channels[c][r]);
+      piece_.channels[c].values.edit().push_back(raw.channels[c][r]);
     }
     if (!raw.stamps_s.empty()) piece_.time.stamps_s.push_back(time_s - window_start_s_);
   }
@@ -95,8 +95,8 @@ void PieceSource::calibrate_block(Block& block) {
   piece.time = head_.time;
   for (std::size_t c = 0; c < block.channels.size(); ++c) {
     const Channel& channel = stream_.head().channels[c];
-    piece.channels.push_back(
-        {channel.name, channel.unit, {block.channels[c].begin(), block.channels[c].end()}});
+    piece.channels.push_back({channel.name, channel.unit,
+                              std::vector(block.channels[c].begin(), block.channels[c].end())});
   }
   calibrate(models_, accelerometers(pieces), pieces);
   std::vector<double> stamps_s = std::move(piece_.time.stamps_s);

@@ -80,7 +80,7 @@ struct IndexPulse {
   double time_s = 0.0, angle_rad = 0.0, moved_rad = 0.0;
 };
 
-std::vector<IndexPulse> index_pulses(const std::vector<double>& level,
+std::vector<IndexPulse> index_pulses(View<double> level,
                                      const std::vector<double>& angle_rad,
                                      const std::vector<double>& times) {
   const auto [least, most] = std::ranges::minmax(level);

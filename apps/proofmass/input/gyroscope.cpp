@@ -119,7 +119,7 @@ std::array<std::vector<double>, 3> rates_radps(const Recording& recording,
           {Severity::warning, fmt::format("{} etc. have no unit: {} is assumed; change it with "
                                           "--rate-unit",
                                           channel.name, unit_if_unknown)});
-    rates[axis] = channel.values;
+    rates[axis] = channel.values.copy();
     for (double& value : rates[axis]) value = unit.si(value);
   }
   return rates;
@@ -146,7 +146,7 @@ std::array<std::vector<double>, 3> calibrated_rates_radps(
                       fmt::format("{}: the sensor file calibrates the gyroscope's {}, and "
                                   "channel {} is in {}",
                                   recording.source, unit, channel.name, channel.unit.symbol));
-      rates[axis] = channel.values;
+      rates[axis] = channel.values.copy();
     }
   }
   const Status applied = sensor::apply(model->gyroscope, accel_mps2, rates);

@@ -104,7 +104,7 @@ void lay_out(Source& source, const std::string& prefix, std::vector<Note>& notes
 void to_si(Channel& channel) {
   const Unit si = si_unit(channel.unit);
   if (channel.unit == si) return;
-  for (double& value : channel.values) value = channel.unit.si(value);
+  for (double& value : channel.values.edit()) value = channel.unit.si(value);
   channel.unit = si;
 }
 

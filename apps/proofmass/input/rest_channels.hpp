@@ -36,7 +36,7 @@ struct RestChannel {
   std::string file;
   Unit unit;
   std::string refused;
-  std::vector<double> series;  ///< NaN for missing samples; empty if refused
+  Samples series;  ///< NaN for missing samples; empty if refused
   double rate_hz = 0.0;
   std::optional<double> lsb;        ///< quantisation step, in the series' unit
   std::optional<std::size_t> axis;  ///< 0, 1, 2 for x, y, z of the only accelerometer or gyroscope
@@ -48,7 +48,7 @@ struct RestChannel {
 struct RestTemperature {
   std::string name;
   Unit unit;  ///< K, or none if unknown
-  std::vector<double> series;
+  Samples series;
 };
 
 /// The channels of one file to be analysed.

@@ -91,7 +91,7 @@ estimate::WheelSensor wheel_sensor(const Recording& recording,
   std::array order{triad.x, triad.y, triad.z};
   while (order[2] && triad.axes() == 2) std::rotate(order.begin(), order.begin() + 1, order.end());
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (order[axis]) sensor.accel_mps2[axis] = recording.channels[*order[axis]].values;
+    if (order[axis]) sensor.accel_mps2[axis] = recording.channels[*order[axis]].values.copy();
   }
   if (!gyroscope.wanted || triad.axes() < 3) return sensor;
   if (const auto channels = find_gyroscope(recording, triad))

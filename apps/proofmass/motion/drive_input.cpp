@@ -84,7 +84,7 @@ const Channel* encoder_channel(const Recording& recording) {
 std::vector<double> encoder_rad(const Channel& channel,
                                 const std::optional<double>& counts_per_turn,
                                 const std::string& file) {
-  std::vector<double> angle = channel.values;
+  std::vector<double> angle = channel.values.copy();
   if (channel.unit.quantity == Quantity::angle && !counts_per_turn) {
     for (double& value : angle) value = channel.unit.si(value);
     return angle;

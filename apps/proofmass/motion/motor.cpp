@@ -83,7 +83,7 @@ const Channel* column_of(const Recording& recording,
 
 std::vector<double> si_values(const Channel& channel, Quantity quantity, const Unit& otherwise) {
   const Unit& unit = channel.unit.quantity == quantity ? channel.unit : otherwise;
-  std::vector<double> values = channel.values;
+  std::vector<double> values = channel.values.copy();
   for (double& value : values) value = unit.si(value);
   return values;
 }
@@ -101,7 +101,7 @@ void add_accelerometers(const MotorCommand& command,
     auto& sensor = record.accel_mps2.emplace_back();
     const std::array axes{one.triad.x, one.triad.y, one.triad.z};
     for (std::size_t i = 0; i < 3; ++i)
-      if (axes[i]) sensor[i] = recordings.front().channels[*axes[i]].values;
+      if (axes[i]) sensor[i] = recordings.front().channels[*axes[i]].values.copy();
   }
 }
 
@@ -122,7 +122,7 @@ estimate::MotorRecord prepare(const MotorCommand& command, std::vector<Note>& no
   record.voltage_v = si_values(*voltage, Quantity::voltage, *parse_unit("V"));
   if (!command.no_current)
     if (const Channel* current = column_of(recording, command.current, "current", "--current")) {
-      record.current_a = current->values;
+      record.current_a = current->values.copy();
       if (command.current_unit == "mA")
         for (double& value : record.current_a) value *= 1e-3;
     }

@@ -121,7 +121,7 @@ std::vector<double> in_si(const Channel& channel,
     throw Failure(usage, fmt::format("{}: {} is in {}: expected an {}", flag, channel.name,
                                      channel.unit.symbol, name_of(quantity)));
   const Unit unit = channel.unit.quantity == quantity ? channel.unit : *parse_unit(otherwise);
-  std::vector<double> values = channel.values;
+  std::vector<double> values = channel.values.copy();
   for (double& value : values) value = unit.si(value);
   return values;
 }
@@ -184,7 +184,7 @@ struct RawSteps {
   double range = 0.0;
 };
 
-RawSteps raw_steps(const std::vector<double>& values) {
+RawSteps raw_steps(View<double> values) {
   RawSteps out{.lsb = signal::find_lsb(values).value_or(0.0)};
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (!(values[k] >= values[out.lowest])) out.lowest = std::isfinite(values[k]) ? k : out.lowest;
@@ -195,7 +195,7 @@ RawSteps raw_steps(const std::vector<double>& values) {
   return out;
 }
 
-double step_after(const RawSteps& raw, const std::vector<double>& values) {
+double step_after(const RawSteps& raw, View<double> values) {
   if (!(raw.lsb > 0.0) || !(raw.range > 0.0)) return 0.0;
   return raw.lsb * std::abs(values[raw.highest] - values[raw.lowest]) / raw.range;
 }
@@ -205,7 +205,7 @@ std::array<std::vector<double>, 3> forces_of(
     const Recording& recording, const std::array<std::optional<std::size_t>, 3>& axes) {
   std::array<std::vector<double>, 3> out;
   for (std::size_t i = 0; i < 3; ++i)
-    if (axes[i]) out[i] = recording.channels[*axes[i]].values;
+    if (axes[i]) out[i] = recording.channels[*axes[i]].values.copy();
   return out;
 }
 
@@ -233,7 +233,7 @@ estimate::TiltRecord prepare(const TiltCommand& command,
   for (std::size_t i = 0; i < 3; ++i) {
     if (!axes[i]) continue;
     record.step_mps2[i] = step_after(raw[i], recording.channels[*axes[i]].values);
-    record.accel_mps2[i] = recording.channels[*axes[i]].values;
+    record.accel_mps2[i] = recording.channels[*axes[i]].values.copy();
     if (command.reads == "-g")
       for (double& value : record.accel_mps2[i]) value = -value;
   }

@@ -232,7 +232,7 @@ std::array<std::vector<double>, 3> readings_of(const Recording& recording, const
   std::array<std::vector<double>, 3> readings;
   const std::array axes{triad.x, triad.y, triad.z};
   for (std::size_t axis = 0; axis < 3; ++axis)
-    if (axes[axis]) readings[axis] = recording.channels[*axes[axis]].values;
+    if (axes[axis]) readings[axis] = recording.channels[*axes[axis]].values.copy();
   return readings;
 }
 

@@ -93,7 +93,7 @@ std::vector<Joined> begin(const Part& first, NoiseOptions options, std::size_t e
     if (!stream) throw Failure(usage, stream.error().at(one.file));
     NoiseChannel channel{.rest = one, .shown = {}};
     channel.rest.title = one.name;
-    channel.rest.series.clear();
+    channel.rest.series = {};
     channel.shown.name = one.name;
     channel.shown.unit = one.unit;
     all.push_back({std::move(channel), std::move(stream).value()});

@@ -139,7 +139,7 @@ void take_temperature_out(const RestTemperature& cause,
                           std::vector<Note>& notes) {
   if (channel.rest.series.empty()) return;
   const std::string& name = channel.rest.title;
-  const Result<Uncertain> found = signal::regress_out(channel.rest.series, cause.series);
+  const Result<Uncertain> found = signal::regress_out(channel.rest.series.edit(), cause.series);
   if (!found) {
     notes.push_back(
         {Severity::warning, fmt::format("{}: {} was not taken out: {}", name, cause.name,

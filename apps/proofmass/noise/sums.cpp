@@ -49,7 +49,7 @@ std::string sums_of(const RestChannel& channel,
                     std::size_t number) {
   StateBytes bytes;
   if (place.as_samples) {
-    std::vector<double> samples = channel.series;
+    std::vector<double> samples = channel.series.copy();
     bytes(samples);
     return std::move(bytes).bytes();
   }

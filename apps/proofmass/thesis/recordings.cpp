@@ -34,7 +34,7 @@ thesis::StaticAxis still_axis(RestChannel channel, std::vector<Note>& notes) {
         fmt::format("{}: channel {}: expected an acceleration, but it is in {}: give {}",
                     channel.file, channel.name, unknown ? "no known unit" : channel.unit.symbol,
                     unknown ? "--unit" : "a --sensor file with its sensitivity"));
-  return {channel.name, std::move(channel.series)};
+  return {channel.name, std::move(channel.series).take()};
 }
 
 thesis::StaticRecord still_record(const ThesisCommand& command, std::vector<Note>& notes) {

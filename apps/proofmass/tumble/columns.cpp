@@ -150,7 +150,7 @@ TumbleColumns tumble_columns(const Recording& recording,
 
 std::vector<double> angles_rad(const Channel& channel) {
   const bool has_unit = channel.unit.quantity == Quantity::angle;
-  std::vector<double> out = channel.values;
+  std::vector<double> out = channel.values.copy();
   for (double& value : out) value *= has_unit ? channel.unit.to_si : rad_per_deg;
   return out;
 }

@@ -70,7 +70,7 @@ void bring_to_si(Channel& channel) {
   const Unit from = channel.unit;
   const bool volts = from.quantity == Quantity::voltage;
   if (!volts && from.quantity != Quantity::acceleration) return;
-  for (double& value : channel.values) value = from.si(value);
+  for (double& value : channel.values.edit()) value = from.si(value);
   channel.unit = *parse_unit(volts ? "V" : "m/s^2");
 }
 
@@ -104,7 +104,7 @@ std::vector<double> encoder_angle(const Recording& recording, const std::string&
                                      "header, \"{} (deg)\"",
                                      recording.source, name, name));
   }
-  std::vector<double> angle(channel->values);
+  std::vector<double> angle = channel->values.copy();
   for (double& a : angle) a = channel->unit.si(a);
   return angle;
 }
@@ -119,7 +119,7 @@ calibrate::RotationRecording rotation_recording(const Recording& recording,
   for (std::size_t k = 0; k < recording.samples(); ++k) {
     turning.time_s.push_back(recording.time.at(k));
   }
-  for (const std::size_t c : chosen) turning.axes.push_back(recording.channels[c].values);
+  for (const std::size_t c : chosen) turning.axes.push_back(recording.channels[c].values.copy());
   turning.angle_rad = encoder_angle(recording, angle_channel);
   return turning;
 }

@@ -47,7 +47,7 @@ int direction_in_words(const std::string& word) {
 std::vector<int> directions(const Recording& recording, const TumbleColumns& columns) {
   std::vector<int> out(recording.samples(), 0);
   if (columns.direction) {
-    const std::vector<double>& values = recording.channels[*columns.direction].values;
+    const Samples& values = recording.channels[*columns.direction].values;
     for (std::size_t k = 0; k < out.size(); ++k) out[k] = (values[k] > 0.0) - (values[k] < 0.0);
     return out;
   }

@@ -31,7 +31,7 @@ Result<Axes> axes_in_si(const Recording& recording, const Triad& triad) {
     if (k > 0 && si->symbol != axes.unit.symbol)
       return Error{Errc::invalid_argument, "the three axes are in different units"};
     axes.unit = *si;
-    axes.values[k] = channel.values;
+    axes.values[k] = channel.values.copy();
     if (channel.unit.quantity != Quantity::counts)
       for (double& value : axes.values[k]) value = channel.unit.si(value);
     axes.lsb[k] = signal::find_lsb(axes.values[k]).value_or(0.0);

@@ -68,7 +68,7 @@ TEST(RecordingPoses, SayWhyThereAreNone) {
   Recording moving = turned();
   for (Channel& channel : moving.channels)
     for (std::size_t k = 0; k < channel.values.size(); ++k)
-      channel.values[k] = 500.0 * std::sin(0.05 * static_cast<double>(k));
+      channel.values.edit()[k] = 500.0 * std::sin(0.05 * static_cast<double>(k));
   EXPECT_EQ(recording_poses(moving).error().code, Errc::not_observable);
 }
 

@@ -82,8 +82,9 @@ Recording samples_of(const Recording& recording, const std::vector<std::size_t>&
     for (const std::size_t k : kept) part.time.stamps_s.push_back(recording.time.at(k) - origin_s);
   for (const Channel& channel : recording.channels) {
     Channel& copy = part.channels.emplace_back(Channel{channel.name, channel.unit, {}});
-    copy.values.reserve(kept.size());
-    for (const std::size_t k : kept) copy.values.push_back(channel.values[k]);
+    std::vector<double>& values = copy.values.edit();
+    values.reserve(kept.size());
+    for (const std::size_t k : kept) values.push_back(channel.values[k]);
   }
   if (recording.first_line > 0) part.first_line = recording.first_line + kept.front();
   part.labels = cut_labels(recording.labels, kept);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "proofmass/core/result.hpp"
+#include "proofmass/core/samples.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/core/view.hpp"
 
@@ -30,9 +31,9 @@ struct Note {
 
 /// One column of a recording, in the unit in which it was recorded.
 struct Channel {
-  std::string name;            ///< as in the file, without its unit: "Acc_X"
-  Unit unit;                   ///< Quantity::unknown if neither the file nor the user states it
-  std::vector<double> values;  ///< as recorded, NaN where the file has no number
+  std::string name;  ///< as in the file, without its unit: "Acc_X"
+  Unit unit;         ///< Quantity::unknown if neither the file nor the user states it
+  Samples values;    ///< as recorded, NaN where the file has no number
 };
 
 /// Source of the sample times.

@@ -23,7 +23,8 @@ Recording noise(std::size_t samples, std::size_t channels = 2) {
   out.time.rate_hz = 100.0;
   for (std::size_t c = 0; c < channels; ++c) {
     out.channels.push_back({"Acc " + std::to_string(c) + " µ", *parse_unit("m/s^2"), {}});
-    for (std::size_t k = 0; k < samples; ++k) out.channels[c].values.push_back(normal(random));
+    for (std::size_t k = 0; k < samples; ++k)
+      out.channels[c].values.edit().push_back(normal(random));
   }
   return out;
 }
@@ -67,9 +68,9 @@ void expect_same(const Pyramid& a, const Pyramid& b) {
 
 TEST(Pyramid, HoldsTheExtremesOfEveryBinAtEveryLevelHoweverTheSamplesCome) {
   Recording recording = noise(40'000);
-  recording.channels[0].values[300] = std::nan("");
-  recording.channels[0].values[301] = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 1024; k < 1280; ++k) recording.channels[1].values[k] = std::nan("");
+  recording.channels[0].values.edit()[300] = std::nan("");
+  recording.channels[0].values.edit()[301] = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 1024; k < 1280; ++k) recording.channels[1].values.edit()[k] = std::nan("");
   const Pyramid pyramid = pyramid_of(recording, 40'000);
   EXPECT_EQ(pyramid.samples, 40'000u);
   EXPECT_EQ(pyramid.end_s, 399.99);

@@ -180,7 +180,7 @@ class RecordingStream::Reading {
     first.channels.insert(first.channels.begin(),
                           {raw.stamps->name, raw.stamps->unit, std::move(evidence.stamps->values)});
     origin_ = raw.stamps->origin.value();
-    for (double& value : first.channels.front().values) value += origin_;
+    for (double& value : first.channels.front().values.edit()) value += origin_;
     if (counter_) ++*counter_;
   }
 

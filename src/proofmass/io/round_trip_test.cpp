@@ -61,13 +61,13 @@ Recording troubled(std::optional<std::int64_t> start_ns) {
   for (int k = 0; k < 3000; ++k) {
     recording.time.stamps_s.push_back(k == 0 ? 0.0 : 0.01 * k + jitter(random));
     for (Channel& channel : recording.channels)
-      channel.values.push_back(std::bit_cast<double>(random()));
+      channel.values.edit().push_back(std::bit_cast<double>(random()));
   }
-  recording.channels[0].values[5] = std::numeric_limits<double>::quiet_NaN();
-  recording.channels[0].values[6] = -std::numeric_limits<double>::infinity();
-  recording.channels[0].values[7] = 5e-324;
-  recording.channels[0].values[8] = -0.0;
-  recording.channels[0].values[9] = 3e34;
+  recording.channels[0].values.edit()[5] = std::numeric_limits<double>::quiet_NaN();
+  recording.channels[0].values.edit()[6] = -std::numeric_limits<double>::infinity();
+  recording.channels[0].values.edit()[7] = 5e-324;
+  recording.channels[0].values.edit()[8] = -0.0;
+  recording.channels[0].values.edit()[9] = 3e34;
   return recording;
 }
 
@@ -96,7 +96,7 @@ TEST_F(RoundTrip, AUniformBaseStaysUniform) {
     Recording recording;
     recording.time = {TimeSource::given_rate, "", rate_hz, {}, {}};
     recording.channels.push_back({"a", *parse_unit("V"), {}});
-    for (int k = 0; k < 500; ++k) recording.channels[0].values.push_back(std::sin(k));
+    for (int k = 0; k < 500; ++k) recording.channels[0].values.edit().push_back(std::sin(k));
     for (const char* name : {"u.csv", "u.npy"}) {
       const auto back = through(recording, name);
       ASSERT_TRUE(back.has_value()) << back.error().message;

@@ -28,9 +28,9 @@ inline Recording troubled_recording(std::size_t samples, const std::vector<std::
     recording.time.stamps_s.push_back(k == 0 ? 0.0
                                              : 0.01 * static_cast<double>(k) + jitter(random));
     for (Channel& channel : recording.channels)
-      channel.values.push_back(std::bit_cast<double>(random()));
+      channel.values.edit().push_back(std::bit_cast<double>(random()));
   }
-  std::vector<double>& values = recording.channels[0].values;
+  std::vector<double>& values = recording.channels[0].values.edit();
   values[1] = std::numeric_limits<double>::quiet_NaN();
   values[2] = -std::numeric_limits<double>::infinity();
   values[3] = 5e-324;

@@ -39,7 +39,7 @@ Figure channels_figure(const InspectedFile& file, std::size_t first, std::size_t
     const Channel& channel = recording.channels[first + k];
     figure.title += (k == 0 ? "" : ", ") + channel.name;
     // An absurd value would compress the rest; the table counts such values.
-    std::vector<double> values = channel.values;
+    std::vector<double> values = channel.values.copy();
     for (double& value : values)
       if (std::abs(value) > signal::absurd_magnitude) value = std::nan("");
     Polyline line = thinned(time_s, values);

@@ -165,7 +165,8 @@ Recording servo_series(const ServoStudy& study) {
   out.time.source = TimeSource::stamps;
   out.time.stamps_s = study.position_traces.front().time_s;
   for (Channel& channel : out.channels)
-    channel.values.resize(out.time.stamps_s.size(), std::numeric_limits<double>::quiet_NaN());
+    channel.values.edit().resize(out.time.stamps_s.size(),
+                                 std::numeric_limits<double>::quiet_NaN());
   return out;
 }
 

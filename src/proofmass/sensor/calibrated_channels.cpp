@@ -28,7 +28,7 @@ std::optional<Triad> lone_accelerometer(const Recording& recording) {
 }
 
 void bring_to_si(Channel& channel, const char* symbol) {
-  for (double& value : channel.values) value = channel.unit.si(value);
+  for (double& value : channel.values.edit()) value = channel.unit.si(value);
   channel.unit = *parse_unit(symbol);
 }
 
@@ -94,7 +94,7 @@ Result<CalibratedBlocks> CalibratedBlocks::make(const Recording& head,
   piece.time = head.time;
   for (const std::size_t c : out.channels_) {
     Channel& channel = piece.channels.emplace_back(head.channels[c]);
-    channel.values.clear();
+    channel.values.edit().clear();
     out.units_.push_back(channel.unit);
   }
   auto found = sensor::accelerometers(out.pieces_);
@@ -117,7 +117,7 @@ Result<Block> CalibratedBlocks::apply(const Block& raw) {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const View<double> values = raw.channels[channels_[i]];
     piece.channels[i].unit = units_[i];
-    piece.channels[i].values.assign(values.begin(), values.end());
+    piece.channels[i].values.edit().assign(values.begin(), values.end());
   }
   if (Status done = to_si(); !done) return done.error();
   Block block{raw.first, {}, raw.stamps_s};

@@ -90,7 +90,7 @@ struct Nominal {
   Quantity wanted;
 
   Result<std::vector<double>> operator()(const Channel& channel, std::size_t axis) const {
-    std::vector<double> values = channel.values;
+    std::vector<double> values = channel.values.copy();
     for (double& v : values) v = channel.unit.si(v);
     Quantity have = channel.unit.quantity;
     if (have == Quantity::counts && wanted != have) {
@@ -170,7 +170,7 @@ Status bring_to_reference_supply(const Electrical& electrical,
   if (!correction) return correction.error();
   for (const auto& axis : {triad.x, triad.y, triad.z}) {
     if (!axis || recording.channels[*axis].unit.quantity != Quantity::voltage) continue;
-    multiply(recording.channels[*axis].values, *correction);
+    multiply(recording.channels[*axis].values.edit(), *correction);
   }
   return Done{};
 }

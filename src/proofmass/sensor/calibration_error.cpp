@@ -20,7 +20,7 @@ void add_supply(const SensorModel& model, Recording& recording) {
   const auto& supply = electrical.supply ? electrical.supply : electrical.reference_supply;
   if (!supply) return;
   Channel channel{name, parse_unit("V").value(), {}};
-  channel.values.assign(recording.samples(), supply->si());
+  channel.values.edit().assign(recording.samples(), supply->si());
   recording.channels.push_back(std::move(channel));
 }
 
@@ -29,7 +29,7 @@ Result<Affine> force_of_reading(const SensorModel& model, const std::string& uni
   Recording recording;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Channel channel{std::string(1, "xyz"[axis]), parse_unit(unit).value(), {0.0, 0.0, 0.0, 0.0}};
-    channel.values[axis + 1] = 1.0;
+    channel.values.edit()[axis + 1] = 1.0;
     recording.channels.push_back(std::move(channel));
   }
   add_supply(model, recording);

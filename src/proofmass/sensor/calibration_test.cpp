@@ -18,7 +18,7 @@ Recording recording_of(const std::vector<Force>& rows, const Unit& unit) {
     Channel& channel = recording.channels.emplace_back();
     channel.name = std::string("acc_") + "xyz"[axis];
     channel.unit = unit;
-    for (const Force& row : rows) channel.values.push_back(row[axis]);
+    for (const Force& row : rows) channel.values.edit().push_back(row[axis]);
   }
   return recording;
 }
@@ -211,7 +211,7 @@ TEST(BringToReferenceSupply, ScalesVoltagesAndNothingElse) {
   const Triad triad{"acc", 0, 1, 2};
   ASSERT_TRUE(bring_to_reference_supply(electrical, triad, recording));
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::vector<double>& values = recording.channels[axis].values;
+    const Samples& values = recording.channels[axis].values;
     EXPECT_NEAR(values[1], values[0], 1e-12) << axis;
   }
   EXPECT_EQ(recording.channels[3].values[1], 3000.0);

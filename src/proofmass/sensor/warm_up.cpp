@@ -47,7 +47,7 @@ Result<std::vector<double>> without(const WarmUp& gone,
         fmt::format("channel {} is not an acceleration: calibrate it before its warm-up is "
                     "corrected",
                     channel.name)};
-  std::vector<double> values = channel.values;
+  std::vector<double> values = channel.values.copy();
   for (std::size_t k = 0; k < values.size(); ++k) {
     const double since_s = since_switch_on_s + time.at(k);
     values[k] =

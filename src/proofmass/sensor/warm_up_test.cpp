@@ -179,7 +179,8 @@ TEST(RemoveWarmUp, LeavesReadingsAsOfTheWarmedUpSensor) {
   const WarmUp warm_up = warm_up_of(drift_of_x(), 0).value();
   Recording recording = three_axes(500);
   for (std::size_t k = 0; k < 500; ++k)
-    recording.channels[0].values[k] = 9.0 + bias_at(warm_up, 12.0 + recording.time.at(k)).value;
+    recording.channels[0].values.edit()[k] =
+        9.0 + bias_at(warm_up, 12.0 + recording.time.at(k)).value;
   const Recording before = recording;
   ASSERT_TRUE(
       remove_warm_up(drift_of_x(), {"acc", 0, 1, 2}, {.since_switch_on_s = 12.0}, recording));
@@ -203,7 +204,7 @@ TEST(RemoveWarmUp, BringsTheChannelToMetresPerSecondSquared) {
 
 TEST(RemoveWarmUp, SaysWhyItCannotAndLeavesTheRecordingAlone) {
   const auto refused = [](DriftModel drift, Recording recording, Triad triad) {
-    const std::vector<double> before = recording.channels[0].values;
+    const Samples before = recording.channels[0].values;
     const Status status = remove_warm_up(drift, triad, {}, recording);
     EXPECT_EQ(recording.channels[0].values, before);
     EXPECT_TRUE(recording.notes.empty());

@@ -12,11 +12,11 @@ estimate::MotorRecord record_of(const Recording& recording) {
   estimate::MotorRecord record;
   for (std::size_t k = 0; k < recording.samples(); ++k)
     record.time_s.push_back(recording.time.at(k));
-  record.voltage_v = recording.channels[0].values;
-  record.current_a = recording.channels[1].values;
+  record.voltage_v = recording.channels[0].values.copy();
+  record.current_a = recording.channels[1].values.copy();
   for (std::size_t c = 2; c + 1 < recording.channels.size(); c += 2)
     record.accel_mps2.push_back(
-        {recording.channels[c].values, recording.channels[c + 1].values, {}});
+        {recording.channels[c].values.copy(), recording.channels[c + 1].values.copy(), {}});
   return record;
 }
 

@@ -307,7 +307,7 @@ TEST(Audit, NoticesRowsOfZeros) {
   recording.channels.push_back({"Gyr_X", *parse_unit("deg/s"), noise(50, 1.0)});
   recording.channels.push_back({"Temp", *parse_unit("degC"), std::vector<double>(50, 20.0)});
   for (Channel& channel : recording.channels)
-    if (channel.name != "Temp") channel.values[0] = 0.0;
+    if (channel.name != "Temp") channel.values.edit()[0] = 0.0;
   EXPECT_EQ(audit(recording).zero_rows, (std::vector<std::size_t>{0}));
 }
 

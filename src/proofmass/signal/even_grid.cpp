@@ -1,11 +1,12 @@
 #include "proofmass/signal/even_grid.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/signal/channel_audit.hpp"
+#include "proofmass/signal/audit/chunk_statistics.hpp"
 #include "proofmass/signal/resample/hole_finder.hpp"
 
 namespace proofmass::signal {
@@ -28,15 +29,19 @@ Result<EvenGrid> even_grid(const TimeBase& time, std::size_t samples) {
   return grid;
 }
 
-std::vector<double> on_even_grid(std::vector<double> values, const EvenGrid& grid) {
+Samples on_even_grid(Samples values, const EvenGrid& grid) {
   PM_EXPECTS(values.size() == grid.recorded);
-  for (double& value : values) value = plausible_or_nan(value);
+  std::vector<std::size_t> odd;
+  for_each_implausible(values, [&](std::size_t k) {
+    if (!std::isnan(values[k])) odd.push_back(k);
+  });
+  for (const std::size_t k : odd) values.edit()[k] = std::numeric_limits<double>::quiet_NaN();
   if (grid.holes.empty()) return values;
   std::vector<double> series;
   series.reserve(grid.recorded + grid.missing);
-  auto from = values.cbegin();
+  const double* from = values.begin();
   const auto append = [&](std::size_t end) {
-    const auto last = values.cbegin() + static_cast<std::ptrdiff_t>(end);
+    const double* last = values.begin() + end;
     series.insert(series.end(), from, last);
     from = last;
   };

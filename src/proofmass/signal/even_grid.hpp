@@ -42,6 +42,6 @@ struct EvenGrid {
 
 /// The values of a channel on the grid: NaN in the holes and for implausible values (is_plausible).
 /// Expects grid.recorded values; without holes they are not copied.
-[[nodiscard]] std::vector<double> on_even_grid(std::vector<double> values, const EvenGrid& grid);
+[[nodiscard]] Samples on_even_grid(Samples values, const EvenGrid& grid);
 
 }  // namespace proofmass::signal

@@ -40,7 +40,7 @@ TEST(EvenGrid, PutsNaNWhereSamplesAreMissing) {
   ASSERT_EQ(grid->holes.size(), 1U);
   EXPECT_EQ(grid->holes[0].before, 10U);
   EXPECT_EQ(grid->holes[0].missing, 3U);
-  const std::vector<double> series = on_even_grid(ramp(40), *grid);
+  const Samples series = on_even_grid(ramp(40), *grid);
   ASSERT_EQ(series.size(), 43U);
   EXPECT_EQ(series[9], 10.0);
   for (std::size_t k = 10; k < 13; ++k) EXPECT_TRUE(std::isnan(series[k]));
@@ -102,7 +102,7 @@ TEST(EvenGrid, HasNaNForWhatIsNoMeasurement) {
   time.rate_hz = 1.0;
   const auto grid = even_grid(time, 5);
   ASSERT_TRUE(grid);
-  const std::vector<double> series = on_even_grid(
+  const Samples series = on_even_grid(
       std::vector{3e34, std::numeric_limits<double>::infinity(), 1e-40, 0.0, std::nan("")}, *grid);
   for (const std::size_t k : {0U, 1U, 2U, 4U}) EXPECT_TRUE(std::isnan(series[k])) << k;
   EXPECT_EQ(series[3], 0.0);

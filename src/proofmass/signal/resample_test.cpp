@@ -21,14 +21,14 @@ Recording recording_of(Function x, double rate_hz, std::size_t count) {
   out.time.rate_hz = rate_hz;
   out.channels.push_back({"x", {}, {}});
   for (std::size_t k = 0; k < count; ++k)
-    out.channels[0].values.push_back(x(static_cast<double>(k) / rate_hz));
+    out.channels[0].values.edit().push_back(x(static_cast<double>(k) / rate_hz));
   return out;
 }
 template <class Function>
 Recording recording_of(Function x, double rate_hz, std::vector<double> stamps_s) {
   Recording out;
   out.channels.push_back({"x", {}, {}});
-  for (const double t : stamps_s) out.channels[0].values.push_back(x(t));
+  for (const double t : stamps_s) out.channels[0].values.edit().push_back(x(t));
   out.time.source = TimeSource::stamps;
   out.time.rate_hz = rate_hz;
   out.time.stamps_s = std::move(stamps_s);
@@ -152,7 +152,7 @@ TEST(Resample, LeavesGapsEmptyWhateverTheMethod) {
 
 TEST(Resample, KeepsWhatIsNoNumberNoNumber) {
   Recording recording = recording_of([](double t) { return t; }, 100.0, 300);
-  recording.channels[0].values[150] = std::nan("");
+  recording.channels[0].values.edit()[150] = std::nan("");
   for (const auto method : {ResampleMethod::sinc, ResampleMethod::linear, ResampleMethod::cubic}) {
     const auto got = resample(recording, {.target_hz = 330.0, .method = method});
     ASSERT_TRUE(got.has_value());
@@ -190,7 +190,7 @@ TEST(Resample, RefusesWhatCannotBe) {
 TEST(Resample, TakesCountersFromTheNearestSampleAndMovesLabels) {
   Recording recording = recording_of([](double t) { return t; }, 100.0, 400);
   recording.channels.push_back({"PacketCounter", {}, {}});
-  for (int k = 0; k < 400; ++k) recording.channels[1].values.push_back(k);
+  for (int k = 0; k < 400; ++k) recording.channels[1].values.edit().push_back(k);
   recording.labels = {{"up", 100, 199}};
   recording.label_channel = "pose";
   const auto got = resample(recording, {.target_hz = 50.0});

@@ -167,7 +167,7 @@ std::vector<double> Resampler::cubic(View<double> values, const std::vector<Plac
 }
 
 std::vector<double> Resampler::on_own_grid(View<double> values) const {
-  if (is_even_) return on_even_grid({values.begin(), values.end()}, own_);
+  if (is_even_) return on_even_grid(std::vector(values.begin(), values.end()), own_).take();
   return cubic(values, own_places_);
 }
 

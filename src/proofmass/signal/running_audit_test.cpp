@@ -68,14 +68,14 @@ Recording some_recording(std::size_t n) {
     counter.push_back(std::fmod(count, 65536.0));
   recording.channels.push_back({"counter", *parse_unit("counts"), counter});
   for (std::size_t row = n / 3; row < std::min(n, n / 3 + 3); ++row)
-    for (std::size_t c = 0; c < 3; ++c) recording.channels[c].values[row] = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) recording.channels[c].values.edit()[row] = 0.0;
   return recording;
 }
 
 Recording head_of(const Recording& recording) {
   Recording head = recording;
   head.time.stamps_s.clear();
-  for (Channel& channel : head.channels) channel.values.clear();
+  for (Channel& channel : head.channels) channel.values.edit().clear();
   return head;
 }
 

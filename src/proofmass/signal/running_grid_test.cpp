@@ -43,7 +43,7 @@ Block block_of(const TimeBase& time,
   return block;
 }
 
-void expect_equal(const std::vector<double>& a, const std::vector<double>& b) {
+void expect_equal(View<double> a, View<double> b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k)
     ASSERT_TRUE(a[k] == b[k] || (std::isnan(a[k]) && std::isnan(b[k]))) << k;

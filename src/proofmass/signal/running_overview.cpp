@@ -66,7 +66,7 @@ Recording RunningOverview::finish(const Recording& head) const {
     out.time.stamps_s.insert(out.time.stamps_s.end(), 2, time_s);
   }
   for (std::size_t c = 0; c < open_.size(); ++c) {
-    std::vector<double>& values = out.channels[c].values;
+    std::vector<double>& values = out.channels[c].values.edit();
     for (std::size_t k = 0; k < spans; ++k) {
       const Range range = k < spans_ ? closed_[c][k] : open_[c];
       const bool is_empty = range.low > range.high;

@@ -28,7 +28,7 @@ TEST(RunningOverview, KeepsEverySpikeOfAMillionSamplesInAFewThousand) {
     overview.add(
         {.first = first, .channels = {View<double>(x).subspan(first, block)}, .stamps_s = {}});
   const Recording picture = overview.finish(head_of(100.0));
-  const std::vector<double>& values = picture.channels[0].values;
+  const Samples& values = picture.channels[0].values;
   ASSERT_EQ(values.size(), picture.time.stamps_s.size());
   EXPECT_LE(values.size(), 2u * 4096u);
   EXPECT_GE(values.size(), 4096u);

@@ -26,7 +26,7 @@ std::vector<double> weights_of(double delay) {
 /// The channel on the even grid, delayed, and evaluated at the recorded samples.
 std::vector<double> moved(View<double> values, double delay, const EvenGrid& grid) {
   const std::vector<double> even =
-      delayed(on_even_grid({values.begin(), values.end()}, grid), delay);
+      delayed(on_even_grid(std::vector(values.begin(), values.end()), grid), delay);
   std::vector<double> out;
   out.reserve(values.size());
   auto hole = grid.holes.begin();

@@ -20,7 +20,7 @@ TEST(Skew, IsTakenOutOfAScannedSine) {
       scanned.channels.push_back({"c" + std::to_string(c), {}, {}});
       for (std::size_t k = 0; k < 2000; ++k) {
         const double t = static_cast<double>(k) / rate_hz + static_cast<double>(c) * between_s;
-        scanned.channels[c].values.push_back(std::sin(2.0 * pi * frequency_hz * t));
+        scanned.channels[c].values.edit().push_back(std::sin(2.0 * pi * frequency_hz * t));
       }
     }
     const auto even = without_skew(scanned, between_s);

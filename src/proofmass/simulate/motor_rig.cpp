@@ -171,11 +171,13 @@ Result<MotorResult> simulate_motor(const MotorOptions& options) {
   constexpr int parts = 4;
   for (std::size_t k = 0; k < samples; ++k) {
     rig.measure(row);
-    for (std::size_t c = 0; c < row.size(); ++c) out.recording.channels[c].values.push_back(row[c]);
+    for (std::size_t c = 0; c < row.size(); ++c)
+      out.recording.channels[c].values.edit().push_back(row[c]);
     const GearMotorState& at = rig.state();
     const std::array truth{rig.angle_rad(), at.load_radps,  at.load_radps2,
                            at.motor_rad,    at.motor_radps, static_cast<double>(at.contact)};
-    for (std::size_t c = 0; c < truth.size(); ++c) out.truth.channels[c].values.push_back(truth[c]);
+    for (std::size_t c = 0; c < truth.size(); ++c)
+      out.truth.channels[c].values.edit().push_back(truth[c]);
     for (int j = 1; j <= parts; ++j) {
       const double t = (static_cast<double>(k) + static_cast<double>(j) / parts) / options.rate_hz;
       rig.advance(exploring_voltage(t), 1.0 / (options.rate_hz * parts));

@@ -36,7 +36,7 @@ std::vector<Channel> triad(const char* name, std::string_view unit_symbol, std::
   std::vector<Channel> channels;
   for (const char letter : {'x', 'y', 'z'}) {
     channels.push_back({std::string(name) + "_" + letter, unit(unit_symbol), {}});
-    channels.back().values.reserve(samples);
+    channels.back().values.edit().reserve(samples);
   }
   return channels;
 }
@@ -67,14 +67,14 @@ class Series {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double drift = drifts_[axis].at(t_s);
         const double noise = options_.sensor.noise_rms_mps2[axis] * white_[axis].normal();
-        read[axis].values.push_back(
+        read[axis].values.edit().push_back(
             sensor_.recorded(axis, sensor_.reading_mps2(axis, motion) + drift, noise));
-        force[axis].values.push_back(motion.force_mps2(static_cast<Eigen::Index>(axis)));
-        bias[axis].values.push_back(drift);
+        force[axis].values.edit().push_back(motion.force_mps2(static_cast<Eigen::Index>(axis)));
+        bias[axis].values.edit().push_back(drift);
         if (number > 0) drift_sums_[axis] += drift;
       }
-      rest.values.push_back(number > 0 ? 1.0 : 0.0);
-      position.values.push_back(static_cast<double>(number));
+      rest.values.edit().push_back(number > 0 ? 1.0 : 0.0);
+      position.values.edit().push_back(static_cast<double>(number));
       if (number > 0) rested_ += 1.0;
     }
     append(result.recording, read);
@@ -93,10 +93,10 @@ class Series {
       const double shown_rad = options_.table.angle_follows
                                    ? motion_.moving_rad(&PlannedPose::commanded_rad, t_s)
                                    : aim.commanded_rad;
-      commanded.values.push_back(shown_rad / rad_per_deg);
-      plane.values.push_back(aim.plane);
-      mount.values.push_back(aim.mount_rad / rad_per_deg);
-      angle.values.push_back(motion_.moving_rad(&PlannedPose::angle_rad, t_s));
+      commanded.values.edit().push_back(shown_rad / rad_per_deg);
+      plane.values.edit().push_back(aim.plane);
+      mount.values.edit().push_back(aim.mount_rad / rad_per_deg);
+      angle.values.edit().push_back(motion_.moving_rad(&PlannedPose::angle_rad, t_s));
     }
     const ProcedureTable& table = options_.table;
     std::vector<Channel>& recorded = result.recording.channels;

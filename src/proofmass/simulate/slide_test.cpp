@@ -30,14 +30,14 @@ ProcedureOptions perfect() {
 }
 
 /// Integral by the trapezoidal rule.
-std::vector<double> integral(const std::vector<double>& values, double step_s) {
+std::vector<double> integral(View<double> values, double step_s) {
   std::vector<double> sums{0.0};
   for (std::size_t k = 1; k < values.size(); ++k)
     sums.push_back(sums.back() + 0.5 * step_s * (values[k - 1] + values[k]));
   return sums;
 }
 
-double furthest(const std::vector<double>& a, const std::vector<double>& b) {
+double furthest(View<double> a, View<double> b) {
   double most = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, std::abs(a[k] - b[k]));
   return most;
@@ -64,7 +64,7 @@ TEST(Slide, TheForceLessGravityIsTheAccelerationAlongTheLine) {
   options.slide.any_mounting = true;
   const ProcedureResult result = simulated(options);
   const Triple acc(result.recording, "acc");
-  const std::vector<double>& accel = column(result.truth_series, "acceleration");
+  const Samples& accel = column(result.truth_series, "acceleration");
   EXPECT_NEAR(result.truth.line.norm(), 1.0, 1e-12);
   EXPECT_NEAR(result.truth.line.dot(result.truth.poses[0].force_mps2), g * std::sin(0.7), 1e-12);
   for (std::size_t k = 0; k < accel.size(); ++k)
@@ -94,7 +94,7 @@ TEST(Slide, StrokesGoThereAndBackAndEndWhereTheySay) {
   options.slide.strokes = 4;
   options.slide.length_jitter = 0.3;
   const ProcedureResult result = simulated(options);
-  const std::vector<double>& along = column(result.truth_series, "displacement");
+  const Samples& along = column(result.truth_series, "displacement");
   ASSERT_EQ(result.truth.strokes.size(), 4U);
   for (const TrueStroke& stroke : result.truth.strokes) {
     EXPECT_NEAR(std::abs(stroke.to_m - stroke.from_m), 0.4, 0.12);

@@ -38,7 +38,7 @@ RecordWords words_of(const RecordFileHead& head) {
 
 Recording without_values(const Recording& recording) {
   Recording out = recording;
-  for (Channel& channel : out.channels) channel.values.clear();
+  for (Channel& channel : out.channels) channel.values.edit().clear();
   out.time.source = TimeSource::stamps;
   out.time.stamps_s.clear();
   return out;

@@ -117,7 +117,7 @@ Result<SimSignal> rig_signal(SourceUri& uri, const Asked& asked) {
 SimSignal played(Recording recording) {
   const std::uint64_t rows = recording.samples();
   auto values = std::make_shared<std::vector<std::vector<double>>>();
-  for (Channel& channel : recording.channels) values->push_back(std::exchange(channel.values, {}));
+  for (Channel& channel : recording.channels) values->push_back(std::move(channel.values).take());
   const auto make = [values, next = std::ptrdiff_t{0}](
                         std::size_t count, std::vector<std::vector<double>>& columns) mutable {
     columns.resize(values->size());

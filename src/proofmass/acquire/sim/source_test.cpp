@@ -75,7 +75,7 @@ Columns rig_rows(simulate::RigOptions options, double seconds) {
   options.wheel.profile.back().duration_s = seconds;
   Columns columns;
   for (Channel& channel : simulate::simulate_rig(options).value().recording.channels)
-    columns.push_back(std::move(channel.values));
+    columns.push_back(std::move(channel.values).take());
   return columns;
 }
 

@@ -57,7 +57,7 @@ Replayed gathered(Source& source) {
 }
 
 /// Bit for bit; NaN equals NaN.
-void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
+void expect_same(View<double> a, View<double> b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k)
     ASSERT_TRUE(a[k] == b[k] || (std::isnan(a[k]) && std::isnan(b[k]))) << k;
@@ -107,7 +107,7 @@ TEST(ReplaySource, GivesALargeFileAsItGivesASmallOne) {
   const auto value = [](std::size_t row) { return 1e-3 * static_cast<double>(row % 977); };
   for (const char* name : {"Acc_X", "Acc_Y", "Acc_Z"}) {
     Channel channel{name, *parse_unit("g"), {}};
-    for (std::size_t k = 0; k < 3'000'000; ++k) channel.values.push_back(value(k));
+    for (std::size_t k = 0; k < 3'000'000; ++k) channel.values.edit().push_back(value(k));
     large.channels.push_back(std::move(channel));
   }
   ASSERT_TRUE(io::write_recording(large, scratch("large.npy")));

@@ -49,8 +49,8 @@ Recording uniform(std::size_t samples, double rate_hz) {
   recording.channels.push_back({"acc_x", *parse_unit("m/s^2"), {}});
   recording.channels.push_back({"Gyro Y", *parse_unit("deg/s"), {}});
   for (std::size_t k = 0; k < samples; ++k) {
-    recording.channels[0].values.push_back(std::sin(static_cast<double>(k)));
-    recording.channels[1].values.push_back(-static_cast<double>(k % 7));
+    recording.channels[0].values.edit().push_back(std::sin(static_cast<double>(k)));
+    recording.channels[1].values.edit().push_back(-static_cast<double>(k % 7));
   }
   return recording;
 }
@@ -69,10 +69,10 @@ TEST_F(MatWriter, KeepsEveryBitNamesUnitsAndTimes) {
     for (int k = 0; k < 3000; ++k) {
       recording.time.stamps_s.push_back(k == 0 ? 0.0 : 0.01 * k + jitter(random));
       for (Channel& channel : recording.channels)
-        channel.values.push_back(std::bit_cast<double>(random()));
+        channel.values.edit().push_back(std::bit_cast<double>(random()));
     }
-    recording.channels[0].values[6] = -std::numeric_limits<double>::infinity();
-    recording.channels[0].values[7] = 5e-324;
+    recording.channels[0].values.edit()[6] = -std::numeric_limits<double>::infinity();
+    recording.channels[0].values.edit()[7] = 5e-324;
     const auto back = through(recording);
     ASSERT_TRUE(back.has_value()) << back.error().message;
     EXPECT_EQ(back->format, "MAT v5");

@@ -40,9 +40,9 @@ TEST(McapRos, ReadsImuMessagesInEitherByteOrder) {
     const Channel* acc = read.find("linear_acceleration_x");
     ASSERT_NE(acc, nullptr);
     EXPECT_EQ(acc->unit.symbol, "m/s^2");
-    EXPECT_EQ(acc->values.at(39), 0.001 * 39);
+    EXPECT_EQ(acc->values.copy().at(39), 0.001 * 39);
     EXPECT_EQ(read.find("angular_velocity_z")->unit.symbol, "rad/s");
-    EXPECT_EQ(read.find("orientation_w")->values.at(5), 1.0);
+    EXPECT_EQ(read.find("orientation_w")->values.copy().at(5), 1.0);
     EXPECT_EQ(read.channels.size(), 10u);
     EXPECT_EQ(accelerometer_triads(read).size(), 1u);
     EXPECT_TRUE(is_noted(read, "orientation_covariance")) << notes_of(read);
@@ -114,7 +114,7 @@ TEST(McapRos, ReadsTheFirstVersionOfRos) {
   }
   const Recording read = expect_read(file + mcap_end());
   EXPECT_EQ(read.time.rate_hz, 50.0);
-  EXPECT_EQ(read.find("vector_x")->values.at(19), 9.5);
+  EXPECT_EQ(read.find("vector_x")->values.copy().at(19), 9.5);
   EXPECT_NE(read.find("header_seq"), nullptr);
 }
 

@@ -138,7 +138,7 @@ TEST(McapWritten, LeavesALostChunkEmptyWhereOnlyTheRateTellsTheTime) {
   Recording recording = troubled(100'000, false);
   for (Channel& channel : recording.channels)
     for (std::size_t k = 0; k < channel.values.size(); ++k)
-      channel.values[k] = static_cast<double>(k);
+      channel.values.edit()[k] = static_cast<double>(k);
   std::string bytes = written(recording, 4096);
   bytes[std::size_t{3} << 19] ^= 1;  // in the second chunk
   const auto read = read_text(bytes);

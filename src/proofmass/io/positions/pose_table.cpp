@@ -31,7 +31,7 @@ constexpr auto positions = std::to_array<std::string_view>(
 std::optional<std::vector<double>> column_called(const Recording& recording, Names names) {
   for (const Channel& channel : recording.channels) {
     if (!is_called(bare_name(channel.name), names)) continue;
-    std::vector<double> values = channel.values;
+    std::vector<double> values = channel.values.copy();
     for (double& value : values) value = channel.unit.si(value);
     return values;
   }
@@ -229,7 +229,7 @@ Recording turned_upright(const Recording& recording) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Channel channel{std::string(1, "xyz"[axis]), recording.channels.front().unit, {}};
     for (const Channel& position : recording.channels)
-      channel.values.push_back(position.values[axis]);
+      channel.values.edit().push_back(position.values[axis]);
     upright.channels.push_back(std::move(channel));
   }
   return upright;

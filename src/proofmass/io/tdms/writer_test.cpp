@@ -65,7 +65,7 @@ TEST_F(TdmsWriting, AnEvenBaseStaysEven) {
     Recording recording;
     recording.time = {TimeSource::given_rate, "", rate_hz, {}, -5};
     recording.channels.push_back({"a", *parse_unit("V"), {}});
-    for (int k = 0; k < 500; ++k) recording.channels[0].values.push_back(std::sin(k));
+    for (int k = 0; k < 500; ++k) recording.channels[0].values.edit().push_back(std::sin(k));
     const Recording back = through(recording);
     EXPECT_TRUE(back.time.is_uniform());
     EXPECT_EQ(back.time.rate_hz, rate_hz);

@@ -86,7 +86,7 @@ TEST(ClockPair, OfARecordingIsToldAndDatesIt) {
   recording.time.start_ns = 0;
   recording.channels = {{"host_time", {}, {}}, {"a", {}, std::vector<double>(2000, 1.0)}};
   for (const double t : both.host_s)
-    recording.channels[0].values.push_back(std::round(1.705479286e12 + 1e3 * t));
+    recording.channels[0].values.edit().push_back(std::round(1.705479286e12 + 1e3 * t));
   note_other_clocks(recording);
   ASSERT_EQ(recording.notes.size(), 1u);
   EXPECT_TRUE(is_noted(recording, "host_time against tick: ")) << notes_of(recording);
@@ -101,9 +101,9 @@ TEST(ClockPair, IsNotLookedForAmongReadings) {
   recording.time.rate_hz = 100.0;
   recording.channels = {{"ax", {}, {}}, {"PacketCounter", {}, {}}, {"runtime", {}, {}}};
   for (int k = 0; k < 500; ++k) {
-    recording.channels[0].values.push_back(0.01 * k);
-    recording.channels[1].values.push_back(k);
-    recording.channels[2].values.push_back(k % 7);
+    recording.channels[0].values.edit().push_back(0.01 * k);
+    recording.channels[1].values.edit().push_back(k);
+    recording.channels[2].values.edit().push_back(k % 7);
   }
   note_other_clocks(recording);
   EXPECT_TRUE(recording.notes.empty()) << notes_of(recording);

@@ -13,7 +13,7 @@ using Values = std::vector<double>;
 Values first_channel(const std::string& file) {
   const auto read = read_text(file);
   EXPECT_TRUE(read.has_value()) << read.error().message;
-  return read ? read->channels.at(0).values : Values{};
+  return read ? read->channels.at(0).values.copy() : Values{};
 }
 
 Errc code_of(const std::string& file) {

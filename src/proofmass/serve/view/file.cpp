@@ -178,7 +178,7 @@ Result<Recording> ViewFile::cut(const Stretch& stretch,
   out.time.rate_hz = head_.rate_hz;
   const View<double> values = channels_[channel].values().subspan(range.first, count);
   out.channels = {head_.channels[channel]};
-  out.channels.front().values.assign(values.begin(), values.end());
+  out.channels.front().values.edit().assign(values.begin(), values.end());
   for (std::size_t k = 0; head_.has_stamps && k < count; ++k)
     out.time.stamps_s.push_back(time_at(range.first + k) - time_at(range.first));
   return out;

@@ -30,8 +30,8 @@ class ViewFileTest : public testing::Test {
     recording.time = at_rate(100.0);
     recording.channels = {{"x", *parse_unit("m/s^2"), {}}, {"y", *parse_unit("g"), {}}};
     for (std::size_t k = 0; k < samples; ++k) {
-      recording.channels[0].values.push_back(static_cast<double>(k));
-      recording.channels[1].values.push_back(spike == k ? 1000.0 : 0.0);
+      recording.channels[0].values.edit().push_back(static_cast<double>(k));
+      recording.channels[1].values.edit().push_back(spike == k ? 1000.0 : 0.0);
       if (stamped)
         recording.time.stamps_s.push_back(0.01 * static_cast<double>(k) +
                                           (k >= samples / 2 ? 50.0 : 0.0));
@@ -40,7 +40,7 @@ class ViewFileTest : public testing::Test {
   }
   ViewFile stored(const Recording& recording) {
     Recording head = recording;
-    for (Channel& channel : head.channels) channel.values.clear();
+    for (Channel& channel : head.channels) channel.values = {};
     head.time.stamps_s.clear();
     auto writer =
         ViewWriter::create(folder_.path(), head, !recording.time.stamps_s.empty()).value();
@@ -145,7 +145,7 @@ TEST_F(ViewFileTest, MarksRestsAndTheOutlierWithinOne) {
       double value =
           (c == 2 ? 9.81 : 0.0) + noise(random) + (moves ? 3.0 * std::sin(0.05 * k) : 0.0);
       if (k >= 4500 && k < 4503 && c == 0) value += 0.15;
-      recording.channels[c].values.push_back(value);
+      recording.channels[c].values.edit().push_back(value);
     }
   const ViewFile view = stored(recording);
   const ViewHead& head = view.head();

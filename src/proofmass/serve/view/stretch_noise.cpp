@@ -11,10 +11,10 @@ Result<std::string> stretch_noise(const Recording& recording) {
   const Channel& channel = recording.channels.front();
   const auto grid = signal::even_grid(recording.time, recording.samples());
   if (!grid) return grid.error();
-  std::vector<double> series = signal::on_even_grid(channel.values, *grid);
+  Samples series = signal::on_even_grid(channel.values, *grid);
   Unit unit = channel.unit;
   if (unit.quantity == Quantity::acceleration) {
-    for (double& value : series) value = unit.si(value);
+    for (double& value : series.edit()) value = unit.si(value);
     unit = *parse_unit("m/s^2");
   }
   auto analysis = characterise::analyse_noise(series, {.rate_hz = grid->rate_hz});

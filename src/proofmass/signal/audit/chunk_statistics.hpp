@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/core/view.hpp"
+#include "proofmass/signal/channel_audit.hpp"
 
 // The loops that take most of an audit's time, compiled for the vector units of several processors.
 // A fixed order of summation gives the same digits on all of them.
@@ -18,6 +20,18 @@ struct ChunkStatistics {
 
 /// Precondition: non-empty.
 [[nodiscard]] ChunkStatistics chunk_statistics(View<double> values);
+
+/// Calls odd(k) for each value k that is not plausible (is_plausible).
+template <class Odd>
+void for_each_implausible(View<double> values, Odd odd) {
+  constexpr std::size_t chunk = 4096;
+  for (std::size_t from = 0; from < values.size(); from += chunk) {
+    const std::size_t end = std::min(from + chunk, values.size());
+    if (chunk_statistics(values.subspan(from, end - from)).plausible) continue;
+    for (std::size_t k = from; k < end; ++k)
+      if (!is_plausible(values[k])) odd(k);
+  }
+}
 
 /// Σ (x − mean)²
 [[nodiscard]] double squares_about(View<double> values, double mean);

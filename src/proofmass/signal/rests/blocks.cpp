@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "proofmass/core/contract.hpp"
+#include "proofmass/signal/audit/chunk_statistics.hpp"
 #include "proofmass/signal/audit/lsb_detector.hpp"
-#include "proofmass/signal/channel_audit.hpp"
 
 namespace proofmass::signal {
 namespace {
@@ -16,25 +16,28 @@ using Axes = View<View<double>>;
 /// The samples of block k except `left_out`.
 RestBlock block_of(Axes axes, const RestBlocks& blocks, std::size_t k, std::size_t left_out) {
   RestBlock block;
-  PerAxis anchor{};  // preserves digits where the level is far from zero
-  PerAxis sum{};
-  PerAxis last{};
-  for (std::size_t s = blocks.first_sample(k); s < blocks.end_sample(k); ++s) {
-    if (s == left_out || !blocks.there[s]) continue;
-    for (std::size_t a = 0; a < axes.size(); ++a) {
-      if (block.count == 0.0) anchor[a] = axes[a][s];
-      const double x = axes[a][s] - anchor[a];
-      sum[a] += x;
-      block.squares[a] += x * x;
-      block.steps[a] += (x - last[a]) * (x - last[a]);
-      last[a] = x;
-    }
-    block.count += 1.0;
-  }
-  if (block.count == 0.0) return block;
+  const auto is_used = [&](std::size_t s) { return s != left_out && blocks.there[s]; };
+  const std::size_t end = blocks.end_sample(k);
+  std::size_t first = blocks.first_sample(k);
+  while (first < end && !is_used(first)) ++first;
+  if (first == end) return block;
   for (std::size_t a = 0; a < axes.size(); ++a) {
-    block.mean[a] = anchor[a] + sum[a] / block.count;
-    block.squares[a] = std::max(0.0, block.squares[a] - sum[a] * sum[a] / block.count);
+    const View<double> axis = axes[a];
+    const double anchor = axis[first];  // preserves digits where the level is far from zero
+    double count = 0.0, sum = 0.0, squares = 0.0, steps = 0.0, last = 0.0;
+    for (std::size_t s = first; s < end; ++s) {
+      if (!is_used(s)) continue;
+      const double x = axis[s] - anchor;
+      count += 1.0;
+      sum += x;
+      squares += x * x;
+      steps += (x - last) * (x - last);
+      last = x;
+    }
+    block.count = count;
+    block.mean[a] = anchor + sum / count;
+    block.squares[a] = std::max(0.0, squares - sum * sum / count);
+    block.steps[a] = steps;
   }
   return block;
 }
@@ -77,8 +80,7 @@ RestBlocks blocks_of(Axes axes, std::size_t window) {
   blocks.there.assign(blocks.samples, 1);
   for (const View<double> axis : axes) {
     PM_EXPECTS(axis.size() == blocks.samples);
-    for (std::size_t k = 0; k < blocks.samples; ++k)
-      if (!is_plausible(axis[k])) blocks.there[k] = 0;
+    for_each_implausible(axis, [&](std::size_t k) { blocks.there[k] = 0; });
   }
   blocks.at.resize(blocks.samples / blocks.block);
   for (std::size_t k = 0; k < blocks.at.size(); ++k)

@@ -24,7 +24,7 @@ inline ProcedureResult simulated(const ProcedureOptions& options) {
   return simulate_procedure(options).value();
 }
 
-inline const std::vector<double>& column(const Recording& recording, std::string_view name) {
+inline const Samples& column(const Recording& recording, std::string_view name) {
   const Channel* channel = recording.find(name);
   EXPECT_NE(channel, nullptr) << name;
   return channel->values;
@@ -37,7 +37,7 @@ struct Triple {
         y(column(recording, name + "_y")),
         z(column(recording, name + "_z")) {}
   Eigen::Vector3d operator()(std::size_t k) const { return {x[k], y[k], z[k]}; }
-  const std::vector<double>&x, &y, &z;
+  const Samples &x, &y, &z;
 };
 
 /// Output of the true equations for a static force.

@@ -114,7 +114,7 @@ TEST(RigElectronics, NoiseDoesNotFollowTheSupply) {
     options.sensors[0].noise_rms_mps2 = {};
     const RigResult clean = simulated(options);
     options.sensors[0].noise_rms_mps2 = {1.0, 1.0, 1.0};
-    std::vector<double> noise = column(simulated(options).recording, "acc1_x");
+    std::vector<double> noise = column(simulated(options).recording, "acc1_x").copy();
     for (std::size_t k = 0; k < noise.size(); ++k) noise[k] -= column(clean.recording, "acc1_x")[k];
     return noise;
   };

@@ -33,7 +33,7 @@ inline simulate::RigOptions wheel(double speed_radps, double start_angle_rad = 0
 }
 
 inline std::vector<double> column(const Recording& recording, std::string_view name) {
-  return recording.find(name)->values;
+  return recording.find(name)->values.copy();
 }
 
 /// The first measurement of one channel.

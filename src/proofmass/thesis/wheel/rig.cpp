@@ -89,16 +89,16 @@ Result<WheelRecord> simulate_wheel(const RigRun& run) {
   for (std::size_t s = 0; s < 2; ++s) {
     record.sensors.push_back({.name = "acc" + std::to_string(s + 1),
                               .time_s = time_s,
-                              .accel_mps2 = {std::move(recording.channels[2 * s].values),
-                                             std::move(recording.channels[2 * s + 1].values),
+                              .accel_mps2 = {std::move(recording.channels[2 * s].values).take(),
+                                             std::move(recording.channels[2 * s + 1].values).take(),
                                              {}}});
     auto& known = record.bias.emplace_back();
     for (std::size_t axis = 0; axis < 2; ++axis)
       known[axis] = known_beforehand(rig.truth.channels[3 + 2 * s + axis].values.front(), random);
   }
-  record.true_angle_rad = std::move(rig.truth.channels[0].values);
-  record.true_speed_radps = std::move(rig.truth.channels[1].values);
-  record.true_accel_radps2 = std::move(rig.truth.channels[2].values);
+  record.true_angle_rad = std::move(rig.truth.channels[0].values).take();
+  record.true_speed_radps = std::move(rig.truth.channels[1].values).take();
+  record.true_accel_radps2 = std::move(rig.truth.channels[2].values).take();
   return record;
 }
 
