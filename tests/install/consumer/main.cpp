@@ -49,7 +49,7 @@ int main() {
   for (std::size_t k = 0; k < rig.recording.samples(); ++k)
     sensors[0].time_s.push_back(rig.recording.time.at(k));
   sensors[0].accel_mps2 = {
-      rig.recording.find("acc1_x")->values, rig.recording.find("acc1_y")->values, {}};
+      rig.recording.find("acc1_x")->values.copy(), rig.recording.find("acc1_y")->values.copy(), {}};
   pm::report::WheelReport report;
   report.inputs = {"rig.csv"};
   report.solution = pm::estimate::estimate_wheel(sensors, {}).value();
