@@ -240,6 +240,21 @@ Mat<at::states, seen_states> seen_slopes(const State& x) {
 
 namespace {
 
+// The model linearised about a path. Speed and yaw rate act in the step in which they change, so a
+// step is linearised about their values at its end: with those at its start the product of a
+// scale and the change is lost, and since the change follows the measurements' noise, the sum of
+// these products is not zero. It made the track and every gyroscope's scale 1 % too small.
+struct AboutPath : detail::LinearAbout<Model> {
+  [[nodiscard]] Transition<states, moving> transition(const State& x, std::size_t k) const {
+    State about = path[k - 1];
+    about(at::speed) = path[k](at::speed);
+    about(at::rate) = path[k](at::rate);
+    Transition<states, moving> step = model.transition(about, k);
+    step.mean += step.F * (x - about).head<moving>();
+    return step;
+  }
+};
+
 template <class AnyModel>
 void run_into(const AnyModel& model,
               const Model& plain,
@@ -294,7 +309,7 @@ Pass run(const Model& model,
          bool backwards) {
   Pass pass;
   if (about.size() == model.size())
-    run_into(detail::LinearAbout<Model>{model, about.data()}, model, prior, backwards, pass);
+    run_into(AboutPath{{model, about.data()}}, model, prior, backwards, pass);
   else
     run_into(model, model, prior, backwards, pass);
   if (pass.readings > 0) pass.nis /= static_cast<double>(pass.readings);
