@@ -157,6 +157,10 @@ WheelMotion roll(const Course& course,
     return Vec(course.position_m[k] + turned(Vec::UnitZ(), course.yaw_rad[k]) * mount);
   };
   double angle = draw.phase(), steer_yaw = course.yaw_rad[0];
+  // A tyre's slip changes over a tenth of a second: white in each step of 1 ms it would be an
+  // angular acceleration that no sensor on a wheel sees.
+  constexpr double share = step_s / 0.1;
+  double faster_m = 0.0, slip_m = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
     const Vec moved = k + 1 < n ? Vec(contact(k + 1) - contact(k)) : Vec::Zero();
     double heading = course.yaw_rad[k];
@@ -172,7 +176,10 @@ WheelMotion roll(const Course& course,
     wheel.motion.position_m.push_back(contact(k) + Vec(0.0, 0.0, radius_m));
     wheel.angle_rad.push_back(angle);
     const double along = moved.dot(chassis.col(0));
-    angle += (along + slip_m_per_rtm * std::sqrt(std::abs(along)) * draw.normal()) / radius_m;
+    const double white_m = slip_m_per_rtm * std::sqrt(std::abs(along)) * draw.normal();
+    faster_m += share * (white_m - faster_m);
+    slip_m += share * (faster_m - slip_m);
+    angle += (along + slip_m) / radius_m;
   }
   return wheel;
 }

@@ -121,13 +121,34 @@ Result<WheelPlane> assume_plane(const Eigen::MatrixX3d& means) {
   return plane;
 }
 
+SymmetricEigen covariance_of(const Eigen::MatrixX3d& rows) {
+  const Eigen::MatrixX3d centred = rows.rowwise() - rows.colwise().mean();
+  return symmetric_eigen(centred.transpose() * centred / static_cast<double>(rows.rows()));
+}
+
+/// True if the least of three spreads is clearly that along the axle.
+bool is_axle(const SymmetricEigen& spread) {
+  return spread.values(1) >= 16.0 * std::max(spread.values(0), 0.0);
+}
+
+/// The spread of the changes from one interval to the next: a vehicle that turns is accelerated
+/// along the axle, slowly. A rotation changes two directions alike.
+std::optional<SymmetricEigen> spread_of_changes(const Eigen::MatrixX3d& means) {
+  const Eigen::Index count = means.rows() - 1;
+  const SymmetricEigen changes = covariance_of(means.bottomRows(count) - means.topRows(count));
+  constexpr double alike = 0.25;
+  const bool is_rotation = is_axle(changes) && changes.values(1) >= alike * changes.values(2);
+  return is_rotation ? std::optional(changes) : std::nullopt;
+}
+
 Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
-  const Eigen::MatrixX3d centred = means.rowwise() - means.colwise().mean();
-  const SymmetricEigen spread =
-      symmetric_eigen(centred.transpose() * centred / static_cast<double>(means.rows()));
-  const double least = std::max(spread.values(0), 0.0), next = spread.values(1);
+  SymmetricEigen spread = covariance_of(means);
   // 0.3 m/s² of spread: gravity rotated by some 25 degrees. Less may be vibration.
-  if (next < 16.0 * least || next < 0.09) {
+  const bool is_rotated = spread.values(1) >= 0.09;
+  if (is_rotated && !is_axle(spread)) {
+    if (const auto changes = spread_of_changes(means)) spread = *changes;
+  }
+  if (!is_rotated || !is_axle(spread)) {
     if (spread.values(2) < 1.0) return assume_plane(means);
     return Error{
         Errc::not_observable,

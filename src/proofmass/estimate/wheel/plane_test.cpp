@@ -67,6 +67,15 @@ TEST(WheelPlane, OfAnAxleThatIsNotLevelTakesGravityAlongItAndNotTheAxis) {
   EXPECT_NEAR(plane.axial_mps2, standard_gravity_mps2 * std::sin(tilt), 0.01);
 }
 
+TEST(WheelPlane, OfAVehicleThatTurnsIsFoundDespiteItsLateralAcceleration) {
+  WheelSensor sensor = record(turning, {}, 100.0, 1);
+  for (std::size_t k = 0; k < sensor.time_s.size(); ++k)
+    sensor.accel_mps2[2][k] += 3.0 * std::sin(1.3 * sensor.time_s[k]);
+  const WheelPlane plane = plane_of(sensor);
+  EXPECT_NEAR(plane.axis[2], 1.0, 1e-3);
+  EXPECT_FALSE(plane.assumed);
+}
+
 TEST(WheelPlane, GivenIsTakenAtAnyLengthAndEitherWay) {
   const WheelPlane plane = plane_of(record(turning, {}, 100.0, 1), Axis{0.0, 0.0, -5.0});
   EXPECT_EQ(plane.axis, (Axis{0.0, 0.0, -1.0}));
