@@ -157,9 +157,9 @@ WheelMotion roll(const Course& course,
     return Vec(course.position_m[k] + turned(Vec::UnitZ(), course.yaw_rad[k]) * mount);
   };
   double angle = draw.phase(), steer_yaw = course.yaw_rad[0];
-  // A tyre's slip changes over a tenth of a second: white in each step of 1 ms it would be an
+  // A tyre follows its slip within some decimetres. White in each step of 1 ms it would be an
   // angular acceleration that no sensor on a wheel sees.
-  constexpr double share = step_s / 0.1;
+  constexpr double share = step_s / 0.02;
   double faster_m = 0.0, slip_m = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
     const Vec moved = k + 1 < n ? Vec(contact(k + 1) - contact(k)) : Vec::Zero();

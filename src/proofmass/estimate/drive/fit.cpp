@@ -17,8 +17,9 @@ constexpr double steer_start_std_rad = 0.5;
 constexpr int relinearisations = 4;
 constexpr double loose = 100.0, steering_psd = 0.1;
 constexpr double course_std_rad = 0.3;
-// Without a yaw rate the shape of the path comes from the fixes, which must be dense.
-constexpr double normal_point_s = 5.0, course_point_s = 1.0;
+// Fixes are averaged over this time, in which a receiver's noise is correlated. Over longer times
+// the wander averages, too: of one of 25 s, averages over 5 s hide a third of its steps.
+constexpr double normal_point_s = 1.0;
 
 Gaussian<at::states> prior_of(const Recorded& recorded, const Setting& setting) {
   Gaussian<at::states> prior;
@@ -255,12 +256,11 @@ Fitted fit_path(const Recorded& recorded,
     open_chart(chart.bearing, chart.origin, model.noise.wander_std_m, prior);
     set_in_path(prior, fitted.pass.path);
   }
-  const double window_s = recorded.has_yaw() ? normal_point_s : course_point_s;
   const int passes = effort == Effort::quick_comparison ? 2 : relinearisations;
   model.comparing = effort != Effort::full;
   for (int i = 0; i < passes; ++i) {
     if (progress) progress("path", static_cast<double>(i) / passes);
-    if (recorded.fixes) form_normal_points(vehicle, fitted.pass.path, window_s, epochs);
+    if (recorded.fixes) form_normal_points(vehicle, fitted.pass.path, normal_point_s, epochs);
     if (i == 1 && effort != Effort::quick_comparison)
       NoiseSearch(model, prior, fitted.pass.path).search();
     for (const int s : {at::wander, at::wander + 1})
