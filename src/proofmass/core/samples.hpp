@@ -18,7 +18,7 @@ namespace proofmass {
 class Samples {
  public:
   Samples() = default;
-  Samples(std::vector<double> values)
+  Samples(std::vector<double> values)  // NOLINT(google-explicit-constructor)
       : own_(std::make_shared<std::vector<double>>(std::move(values))) {}
   Samples(std::initializer_list<double> values) : Samples(std::vector<double>(values)) {}
 
