@@ -13,7 +13,7 @@ namespace {
 using State = Mat<at::states>;
 
 constexpr double gyro_scale_std = 0.015;  // of MEMS gyroscopes as delivered
-constexpr double steer_start_std_rad = 0.5;
+constexpr double steer_start_std_rad = 0.5, least_start_std_rad = 0.003;
 constexpr int relinearisations = 4;
 constexpr double loose = 100.0, steering_psd = 0.1;
 constexpr double course_std_rad = 0.3;
@@ -32,7 +32,10 @@ Gaussian<at::states> prior_of(const Recorded& recorded, const Setting& setting) 
   const Vehicle& vehicle = setting.vehicle;
   for (int i = 0; i < vehicle.wheels; ++i) {
     const auto n = static_cast<std::size_t>(i);
-    set(at::rolled + i, 0.0, 0.003 * vehicle.radius_m[n]);
+    // All angles are relative to the first, and share its error.
+    const double first_std_rad =
+        std::max(least_start_std_rad, recorded.wheels[n].angle_std_rad.front());
+    set(at::rolled + i, 0.0, first_std_rad * vehicle.radius_m[n]);
     set(at::radius + i, 0.0, setting.radius_std[n]);
     if (recorded.wheels[n].yaw_rad.empty()) continue;
     set(at::drift + i, 0.0, vehicle.steered[n] ? steer_start_std_rad : 0.001);
