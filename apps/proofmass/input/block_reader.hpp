@@ -45,7 +45,6 @@ class PieceSource {
   Recording piece_;  ///< the piece being cut or calibrated
   Block first_;
   bool has_first_ = false;
-  bool is_past_ = false;         ///< the end of the window has been passed
   std::size_t given_ = 0;        ///< samples in the window so far
   double window_start_s_ = 0.0;  ///< time of its first sample
 };
