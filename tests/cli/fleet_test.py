@@ -383,7 +383,7 @@ class ManyRecordings(FleetTest):
     def test_a_thousand_give_the_same_with_one_process_and_with_two(self):
         count = int(os.environ["PROOFMASS_FLEET_RECORDINGS"])
         self.fleet(files=count // 20, broken=(7, 118, 333, 554, 891))
-        one = self.document("fleet", "noise", "manifest.csv", "--into", "one", "-j", "1")
+        self.document("fleet", "noise", "manifest.csv", "--into", "one", "-j", "1")
         two = self.document("fleet", "noise", "manifest.csv", "--into", "two", "-j", "2")
         self.assertEqual(self.counts(two), (count, count - 5, 0, 5))
         self.assertEqual((self.folder / "one/results.parquet").read_bytes(), (self.folder / "two/results.parquet").read_bytes())

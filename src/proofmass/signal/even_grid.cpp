@@ -31,11 +31,10 @@ Result<EvenGrid> even_grid(const TimeBase& time, std::size_t samples) {
 
 Samples on_even_grid(Samples values, const EvenGrid& grid) {
   PM_EXPECTS(values.size() == grid.recorded);
-  std::vector<std::size_t> odd;
-  for_each_implausible(values, [&](std::size_t k) {
-    if (!std::isnan(values[k])) odd.push_back(k);
-  });
-  for (const std::size_t k : odd) values.edit()[k] = std::numeric_limits<double>::quiet_NaN();
+  bool any = false;
+  for_each_implausible(values, [&](std::size_t k) { any = any || !std::isnan(values[k]); });
+  if (any)
+    for (double& value : values.edit()) value = plausible_or_nan(value);
   if (grid.holes.empty()) return values;
   std::vector<double> series;
   series.reserve(grid.recorded + grid.missing);

@@ -242,8 +242,8 @@ namespace {
 
 // The model linearised about a path. Speed and yaw rate act in the step in which they change, so a
 // step is linearised about their values at its end: with those at its start the product of a
-// scale and the change is lost, and since the change follows the measurements' noise, the sum of
-// these products is not zero. It made the track and every gyroscope's scale 1 % too small.
+// scale and the change would be lost, and since the change follows the measurements' noise, the sum
+// of these products is not zero.
 struct AboutPath : detail::LinearAbout<Model> {
   [[nodiscard]] Transition<states, moving> transition(const State& x, std::size_t k) const {
     State about = path[k - 1];
