@@ -69,4 +69,16 @@ std::vector<double> cosine_transform(View<double> series) {
   return folded;
 }
 
+std::vector<double> cosine_sums(View<double> weights) {
+  const std::size_t n = weights.size();
+  if (n == 0) return {};
+  std::vector<double> even(2 * n, 0.0);
+  even[0] = weights[0];
+  for (std::size_t k = 1; k < n; ++k) even[k] = even[2 * n - k] = 0.5 * weights[k];
+  const Complexes spectrum = fourier_transform(even);
+  std::vector<double> sums(n + 1);
+  for (std::size_t d = 0; d <= n; ++d) sums[d] = spectrum[d].real();
+  return sums;
+}
+
 }  // namespace proofmass::signal

@@ -18,4 +18,7 @@ namespace proofmass::signal {
 /// or up to 16 N by Bluestein's method.
 [[nodiscard]] std::vector<double> cosine_transform(View<double> series);
 
+/// Σ w[k] cos(π k d / N) over k = 0 … N − 1 for d = 0 … N, one complex transform of length 2N.
+[[nodiscard]] std::vector<double> cosine_sums(View<double> weights);
+
 }  // namespace proofmass::signal

@@ -49,6 +49,21 @@ TEST(CosineTransform, PutsAConstantIntoItsFirstCoefficient) {
 
 TEST(CosineTransform, OfNothingIsNothing) {
   EXPECT_TRUE(cosine_transform({}).empty());
+  EXPECT_TRUE(cosine_sums({}).empty());
+}
+
+TEST(CosineSums, AreTheirDefinitionAtEveryLength) {
+  for (const std::size_t n : {1u, 2u, 3u, 8u, 37u, 74u, 360u, 411u}) {
+    const std::vector<double> w = random_series(n), sums = cosine_sums(w);
+    ASSERT_EQ(sums.size(), n + 1);
+    for (std::size_t d = 0; d <= n; ++d) {
+      double wanted = 0.0;
+      for (std::size_t k = 0; k < n; ++k)
+        wanted +=
+            w[k] * std::cos(std::numbers::pi * static_cast<double>(k * d) / static_cast<double>(n));
+      EXPECT_NEAR(sums[d], wanted, 1e-12 * static_cast<double>(n)) << n << ", " << d;
+    }
+  }
 }
 
 }  // namespace

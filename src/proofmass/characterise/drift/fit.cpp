@@ -35,14 +35,12 @@ Interval95 log_interval(double value, double std_of_log, double dof) {
 
 double undetected_below(const DriftEvidence& evidence, const DriftFitAtShape& constant) {
   constexpr double share = 0.2, two_sided = 1.959963984540054;
-  OrdinateMeans means{linear_columns(evidence, constant.at), {}};
-  means.fitted.conservativeResize(Eigen::NoChange, means.fitted.cols() + 1);
-  means.fitted.rightCols(1) =
-      evidence.rise(share * evidence.duration_s()).tail(evidence.blocks() - 1);
+  const MatrixXd others = linear_columns(evidence, constant.at);
+  OrdinateMeans means{MatrixXd(others.rows(), others.cols() + 1), {}, evidence.missing()};
+  means.fitted << evidence.rise(share * evidence.duration_s()).tail(others.rows()), others;
   const OrdinateFit fit =
       evaluate_ordinates(evidence.contrasts(), constant.noise.P, means, constant.fit.strength);
-  const Index last = means.fitted.cols() - 1;
-  return std::abs(fit.coefficients(last)) + two_sided * std::sqrt(fit.covariance(last, last));
+  return std::abs(fit.coefficients(0)) + two_sided * std::sqrt(fit.covariance(0, 0));
 }
 
 // "logarithm", "square root and logarithm", "square root, logarithm and sine".

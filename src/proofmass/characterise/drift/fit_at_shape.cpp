@@ -62,10 +62,6 @@ MatrixXd beside(const MatrixXd& left, const MatrixXd& right) {
   return both;
 }
 
-OrdinateMeans restricted(const DriftEvidence& evidence, const ShapeAt& at) {
-  return {linear_columns(evidence, at), tangent_columns(evidence, at)};
-}
-
 // The best-fitting time constants for noise of density S.
 std::vector<double> best_times(const DriftEvidence& evidence,
                                const ShapeAt& at,
@@ -122,7 +118,7 @@ void start_times(const DriftEvidence& evidence, const MatrixXd& P, ShapeAt& at) 
     for (std::size_t k = 0; k < points; ++k) {
       at.log_times.back() =
           low + (high - low) * static_cast<double>(k) / static_cast<double>(points - 1);
-      const OrdinateMeans means{linear_columns(evidence, at), {}};
+      const OrdinateMeans means{linear_columns(evidence, at), {}, evidence.missing()};
       const OrdinateFit fit = fit_ordinates(evidence.contrasts(), P, means, strength);
       strength = fit.strength;
       if (fit.log_likelihood <= best) continue;
@@ -160,7 +156,7 @@ DriftCandidate candidate_of(const DriftEvidence& evidence,
       1 + static_cast<int>(varying + 2 * candidate.steps) + (has_line(trial.at.shape) ? 1 : 0);
   const double cost = std::log(static_cast<double>(evidence.blocks()) -
                                static_cast<double>(evidence.missing().size()));
-  const OrdinateMeans means{linear_columns(evidence, trial.at), {}};
+  const OrdinateMeans means{linear_columns(evidence, trial.at), {}, evidence.missing()};
   candidate.information_criterion = std::numeric_limits<double>::infinity();
   for (const NoiseColumns& noise : {choice.base(), choice.with_base(trial.noise)}) {
     const double found = fit_ordinates(evidence.contrasts(), noise.P, means).log_likelihood;
@@ -214,7 +210,15 @@ MatrixXd tangent_columns(const DriftEvidence& evidence, const ShapeAt& at) {
                                                                      static_cast<Index>(k)));
     tangents.col(static_cast<Index>(k)) = tangent.tail(rows);
   }
-  return beside(linear_columns(evidence, at), tangents);
+  const MatrixXd linear = linear_columns(evidence, at);
+  const Index own = linear.cols() - evidence.dummies().cols();
+  MatrixXd columns(rows, linear.cols() + tangents.cols());
+  columns << linear.leftCols(own), tangents, evidence.dummies().bottomRows(rows);
+  return columns;
+}
+
+OrdinateMeans restricted(const DriftEvidence& evidence, const ShapeAt& at) {
+  return {linear_columns(evidence, at), tangent_columns(evidence, at), evidence.missing()};
 }
 
 VectorXd rival_by_log_scale(const DriftEvidence& evidence,

@@ -22,8 +22,12 @@ struct ShapeAt {
 /// rival's columns, line, steps, missing blocks].
 [[nodiscard]] Eigen::MatrixXd linear_columns(const DriftEvidence& evidence, const ShapeAt& at);
 
-/// Those, and the derivatives by each ln T for an amplitude of 1; two for the sine.
+/// Those, and before the missing blocks the derivatives by each ln T for an amplitude of 1; two for
+/// the sine.
 [[nodiscard]] Eigen::MatrixXd tangent_columns(const DriftEvidence& evidence, const ShapeAt& at);
+
+/// The linear columns fitted, with the restricted likelihood of the tangent columns.
+[[nodiscard]] OrdinateMeans restricted(const DriftEvidence& evidence, const ShapeAt& at);
 
 /// Derivative by ln τ of a rival with these amplitudes, k = 0 too.
 [[nodiscard]] Eigen::VectorXd rival_by_log_scale(const DriftEvidence& evidence,

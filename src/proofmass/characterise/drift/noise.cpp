@@ -126,15 +126,15 @@ std::optional<NoiseChoice::Option> NoiseChoice::with_markov(const Option& beside
                                                             const VectorXd& z,
                                                             const OrdinateMeans& means) const {
   constexpr double hopeless = 0.25 * gain_for_time;
-  double promise = 0.0;
-  for (const VectorXd& shape : markov_)
-    promise = std::max(promise, promised_gain(z, beside.columns.P, means, beside.fit, shape));
-  if (promise < hopeless) return std::nullopt;
-  const VectorXd start = with_zero(beside.fit.strength);
+  if (promised_gain(z, beside.columns.P, means, beside.fit, markov_) < hopeless)
+    return std::nullopt;
+  VectorXd strength = with_zero(beside.fit.strength);
   NoiseColumns tried = with(beside.columns, Term::markov, markov_times_s_.front());
   const auto loss = [&](const VectorXd& shape) {
     tried.P.rightCols(1) = shape;
-    return -fit_ordinates(z, tried.P, means, start).log_likelihood;
+    OrdinateFit fit = fit_ordinates(z, tried.P, means, strength);
+    strength = std::move(fit.strength);
+    return -fit.log_likelihood;
   };
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -152,7 +152,7 @@ std::optional<NoiseChoice::Option> NoiseChoice::with_markov(const Option& beside
   const double log_time = least_between(bracket, [&](double log_time_s) {
                             return loss(column(Term::markov, std::exp(log_time_s)));
                           }).place;
-  return option(with(beside.columns, Term::markov, std::exp(log_time)), z, means, start);
+  return option(with(beside.columns, Term::markov, std::exp(log_time)), z, means, strength);
 }
 
 // With flicker, if it can be significant.
@@ -160,7 +160,7 @@ std::optional<NoiseChoice::Option> NoiseChoice::with_flicker(const Option& besid
                                                              const VectorXd& z,
                                                              const OrdinateMeans& means) const {
   constexpr double hopeless = 0.25 * gain_for_term;
-  if (promised_gain(z, beside.columns.P, means, beside.fit, flicker_) < hopeless)
+  if (promised_gain(z, beside.columns.P, means, beside.fit, {&flicker_, 1}) < hopeless)
     return std::nullopt;
   return option(with(beside.columns, Term::flicker), z, means, with_zero(beside.fit.strength));
 }

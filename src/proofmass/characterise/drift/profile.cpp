@@ -83,7 +83,7 @@ DriftProfile::DriftProfile(const DriftEvidence& evidence, const DriftFitAtShape&
       adjusting_.transpose() * (trial.fit.density.cwiseInverse().asDiagonal() * adjusting_);
   const MatrixXd covariance = positive_inverse(information);
   const auto times = static_cast<Index>(trial.at.log_times.size());
-  const Index first = covariance.rows() - times;
+  const Index first = covariance.rows() - evidence.dummies().cols() - times;
   for (Index k = 0; k < times; ++k) {
     const double amplitude = std::abs(trial.fit.coefficients(k));
     reach_.push_back(std::sqrt(covariance(first + k, first + k)) / amplitude);
@@ -96,7 +96,7 @@ DriftProfile::DriftProfile(const DriftEvidence& evidence, const DriftFitAtShape&
 // Loss with all linear parameters, and the noise, refitted.
 double DriftProfile::loss(const Held& held, const ShapeAt& at) const {
   VectorXd z = evidence_.contrasts();
-  OrdinateMeans means{linear_columns(evidence_, at), adjusting_};
+  OrdinateMeans means{linear_columns(evidence_, at), adjusting_, evidence_.missing()};
   if (held.amplitude) {
     z -= *held.amplitude * means.fitted.col(0);
     means.fitted = means.fitted.rightCols(means.fitted.cols() - 1).eval();

@@ -58,7 +58,8 @@ GainTest against(const DriftEvidence& evidence,
                  DriftShape without,
                  const std::vector<const NoiseColumns*>& noises) {
   const ShapeAt null{without, {}, {}};
-  const OrdinateMeans means{linear_columns(evidence, null), tangent_columns(evidence, trial.at)};
+  const OrdinateMeans means{linear_columns(evidence, null), tangent_columns(evidence, trial.at),
+                            evidence.missing()};
   double best = -std::numeric_limits<double>::infinity();
   for (const NoiseColumns* noise : noises)
     best = std::max(best, fit_ordinates(evidence.contrasts(), noise->P, means).log_likelihood);
@@ -142,9 +143,7 @@ GainTest DriftSelection::plain_test(const DriftFitAtShape& trial) const {
   const NoiseColumns& white = choice_.white();
   DriftFitAtShape plain = trial;
   plain.noise = white;
-  plain.fit =
-      fit_ordinates(evidence_.contrasts(), white.P,
-                    {linear_columns(evidence_, trial.at), tangent_columns(evidence_, trial.at)});
+  plain.fit = fit_ordinates(evidence_.contrasts(), white.P, restricted(evidence_, trial.at));
   return against(evidence_, plain, DriftShape::constant, {&white});
 }
 

@@ -24,8 +24,7 @@ DriftFitAtShape trial_of(const DriftEvidence& evidence, const ShapeAt& at) {
   trial.at = at;
   trial.noise = NoiseChoice(evidence).base();
   trial.fit = evaluate_ordinates(evidence.ordinates().tail(evidence.blocks() - 1), trial.noise.P,
-                                 {linear_columns(evidence, at), tangent_columns(evidence, at)},
-                                 Eigen::Vector2d(N * N, K * K));
+                                 restricted(evidence, at), Eigen::Vector2d(N * N, K * K));
   return trial;
 }
 
@@ -213,10 +212,8 @@ DriftFitAtShape markov_trial(const DriftEvidence& evidence, double q, double rel
         relaxation_density(relaxation_s, evidence.frequency_hz(k + 1), evidence.sampling());
   trial.noise.terms.push_back(Term::markov);
   trial.noise.markov_time_constant_s = relaxation_s;
-  trial.fit = evaluate_ordinates(
-      evidence.ordinates().tail(rows), trial.noise.P,
-      {linear_columns(evidence, exponential), tangent_columns(evidence, exponential)},
-      Eigen::Vector2d(N * N, q * q));
+  trial.fit = evaluate_ordinates(evidence.ordinates().tail(rows), trial.noise.P,
+                                 restricted(evidence, exponential), Eigen::Vector2d(N * N, q * q));
   return trial;
 }
 

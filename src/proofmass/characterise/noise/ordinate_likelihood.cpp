@@ -7,6 +7,7 @@
 #include "proofmass/characterise/noise/fisher_scoring.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/linalg.hpp"
+#include "proofmass/signal/fourier.hpp"
 
 namespace proofmass::characterise {
 namespace {
@@ -48,16 +49,17 @@ class Ordinates {
     State state;
     const VectorXd weight = S.inverse().matrix();
     state.residual = z_.array();
+    const GramOfColumns gram(means_.impulses, weight);
     double data = S.log().sum();
     if (means_.fitted.cols() > 0) {
-      state.information = PositiveFactor(weighted_gram(means_.fitted, weight));
+      state.information = PositiveFactor(gram.of(means_.fitted));
       const VectorXd Wz = weight.cwiseProduct(z_);
       state.coefficients = state.information.solve(means_.fitted.transpose() * Wz);
       state.residual -= (means_.fitted * state.coefficients).array();
     }
     data += (state.residual.square() / S).sum();
     if (means_.adjusting.cols() > 0) {
-      state.adjusting_information = PositiveFactor(weighted_gram(means_.adjusting, weight));
+      state.adjusting_information = PositiveFactor(gram.of(means_.adjusting));
       data += state.adjusting_information.log_determinant();
     }
     state.log_likelihood = -0.5 * data;
@@ -106,6 +108,45 @@ OrdinateFit result_of(State state, VectorXd theta) {
 
 }  // namespace
 
+GramOfColumns::GramOfColumns(View<std::size_t> impulses, const VectorXd& w)
+    : impulses_(impulses), w_(w) {
+  constexpr std::size_t few = 16;  // whose products are as fast as a transform
+  if (impulses.size() < few) return;
+  std::vector<double> weights(static_cast<std::size_t>(w.size()) + 1, 0.0);
+  std::copy(w.begin(), w.end(), weights.begin() + 1);
+  sums_ = signal::cosine_sums(weights);
+}
+
+MatrixXd GramOfColumns::of(const MatrixXd& X) const {
+  if (sums_.empty()) return weighted_gram(X, w_);
+  const auto m = std::ssize(impulses_);
+  const Index own = X.cols() - m;
+  PM_EXPECTS(own >= 0 && X.rows() == w_.size());
+  const MatrixXd curves = X.leftCols(own);
+  MatrixXd gram(X.cols(), X.cols());
+  gram.topLeftCorner(own, own) = weighted_gram(curves, w_);
+  gram.bottomLeftCorner(m, own) = X.rightCols(m).transpose() * (w_.asDiagonal() * curves);
+  gram.topRightCorner(own, m) = gram.bottomLeftCorner(m, own).transpose();
+  gram.bottomRightCorner(m, m) = of_impulses(X.col(own));
+  return gram;
+}
+
+// The columns' common factor c from their sum of squares, c² (n − 1)/2.
+MatrixXd GramOfColumns::of_impulses(const VectorXd& first) const {
+  const double scale = first.squaredNorm() / static_cast<double>(first.size());
+  const std::size_t twice_n = 2 * (sums_.size() - 1);
+  MatrixXd gram(std::ssize(impulses_), std::ssize(impulses_));
+  for (std::size_t i = 0; i < impulses_.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const std::size_t difference = impulses_[i] - impulses_[j];
+      const std::size_t sum = impulses_[i] + impulses_[j] + 1;
+      const auto row = static_cast<Index>(i), column = static_cast<Index>(j);
+      gram(row, column) = gram(column, row) =
+          scale * (sums_[difference] + sums_[std::min(sum, twice_n - sum)]);
+    }
+  return gram;
+}
+
 OrdinateFit fit_ordinates(const VectorXd& z,
                           const MatrixXd& P,
                           const OrdinateMeans& means,
@@ -122,27 +163,28 @@ double promised_gain(const VectorXd& z,
                      const MatrixXd& P,
                      const OrdinateMeans& means,
                      const OrdinateFit& fit,
-                     const VectorXd& column) {
+                     View<VectorXd> columns) {
   const Ordinates ordinates(z, P, means);
   const State state = ordinates.at_density(fit.density.array());
   const VectorXd weight = (0.5 / state.S.square()).matrix();
-  const VectorXd weighted = weight.cwiseProduct(column);
-  const double score = weighted.dot(ordinates.expected_squares(state) - fit.density);
-  if (score <= 0.0) return 0.0;
-  double information = weighted.dot(column);
+  const VectorXd excess = ordinates.expected_squares(state) - fit.density;
   std::vector<Index> active;
   for (Index k = 0; k < P.cols(); ++k)
     if (fit.strength(k) > 0.0) active.push_back(k);
-  if (!active.empty()) {
-    const MatrixXd X = P(Eigen::all, active);
+  const MatrixXd X = P(Eigen::all, active);
+  const MatrixXd own = positive_inverse(X.transpose() * (weight.asDiagonal() * X));
+  double most = 0.0;
+  for (const VectorXd& column : columns) {
+    const VectorXd weighted = weight.cwiseProduct(column);
+    const double score = weighted.dot(excess);
+    if (score <= 0.0) continue;
     const VectorXd shared = X.transpose() * weighted;
-    const MatrixXd own = X.transpose() * (weight.asDiagonal() * X);
-    information -= shared.dot(positive_inverse(own) * shared);
+    const double alone = weighted.dot(column), information = alone - shared.dot(own * shared);
+    // A column spanned by the others adds nothing.
+    constexpr double least_share = 1e-9;
+    if (information > least_share * alone) most = std::max(most, score * score / information);
   }
-  // A column spanned by the others adds nothing.
-  constexpr double least_share = 1e-9;
-  if (information <= least_share * weighted.dot(column)) return 0.0;
-  return score * score / information;
+  return most;
 }
 
 OrdinateFit evaluate_ordinates(const VectorXd& z,

@@ -1,6 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "proofmass/core/view.hpp"
 
 namespace proofmass::characterise {
 
@@ -11,6 +15,27 @@ struct OrdinateMeans {
   /// X̃: columns for which the restricted likelihood corrects; may include those of nonlinear
   /// parameters in addition to X, and is the same in all compared likelihoods.
   Eigen::MatrixXd adjusting;
+  /// Blocks j whose impulses c cos(π k (j + ½)/n), k = 1 … n − 1, are the last columns of both (of
+  /// X̃ if it has any).
+  View<std::size_t> impulses = {};
+};
+
+/// Products Xᵀ diag(w) X, where the last columns of X are the impulses of these blocks. A product
+/// of two cosines is half a sum of cosines of the blocks' difference and sum, so that those of m
+/// impulses cost O(m²) after one transform of the weights, instead of O(n m²).
+class GramOfColumns {
+ public:
+  /// Both must outlive it.
+  GramOfColumns(View<std::size_t> impulses, const Eigen::VectorXd& w);
+
+  [[nodiscard]] Eigen::MatrixXd of(const Eigen::MatrixXd& X) const;
+
+ private:
+  [[nodiscard]] Eigen::MatrixXd of_impulses(const Eigen::VectorXd& first) const;
+
+  View<std::size_t> impulses_;
+  const Eigen::VectorXd& w_;
+  std::vector<double> sums_;  ///< Σ w cos(π k d/n) of the lags d; none for few impulses
 };
 
 struct OrdinateFit {
@@ -37,15 +62,15 @@ struct OrdinateFit {
                                         const OrdinateMeans& means,
                                         const Eigen::VectorXd& start = {});
 
-/// Expected gain of a further column c, of strength zero so far, in twice the log-likelihood, by
-/// its score test: (½ Σ c (p − S)/S²)² over the part of its information ½ Σ c²/S² not shared by the
-/// strengths above zero, p the expected squares; 0 for a negative score. Source: C. R. Rao, Proc.
-/// Camb. Phil. Soc. 44 (1948) 50.
+/// Largest expected gain of one of these columns c, of strength zero so far, in twice the
+/// log-likelihood, by its score test: (½ Σ c (p − S)/S²)² over the part of its information ½ Σ
+/// c²/S² not shared by the strengths above zero, p the expected squares; 0 for a negative score.
+/// Source: C. R. Rao, Proc. Camb. Phil. Soc. 44 (1948) 50.
 [[nodiscard]] double promised_gain(const Eigen::VectorXd& z,
                                    const Eigen::MatrixXd& P,
                                    const OrdinateMeans& means,
                                    const OrdinateFit& fit,
-                                   const Eigen::VectorXd& column);
+                                   View<Eigen::VectorXd> columns);
 
 /// fit_ordinates with θ given.
 [[nodiscard]] OrdinateFit evaluate_ordinates(const Eigen::VectorXd& z,

@@ -30,10 +30,18 @@ Series record(unsigned seed) {
                        test::random_walk(0.3, rate_hz, n, seed + 1)});
 }
 
-Series with_gap(Series samples) {
-  for (const std::size_t k : {5UL, 40UL, 41UL, 42UL, 95UL})
-    samples[k] = std::numeric_limits<double>::quiet_NaN();
+Series without(Series samples, const std::vector<std::size_t>& blocks) {
+  for (const std::size_t k : blocks) samples[k] = std::numeric_limits<double>::quiet_NaN();
   return samples;
+}
+
+/// All gaps of 1 to 7 blocks that begin at a multiple of 12: 28 blocks.
+std::vector<std::size_t> many_blocks() {
+  std::vector<std::size_t> blocks;
+  for (std::size_t gap = 0; gap < n / 12; ++gap)
+    for (std::size_t k = 0; k < std::min<std::size_t>(gap + 1, 7); ++k)
+      blocks.push_back(12 * gap + k);
+  return blocks;
 }
 
 /// The same record in two forms: as ordinates, with each sample a block, and dense.
@@ -50,6 +58,7 @@ struct Both {
       : evidence(test::evidence_of(samples, {rate_hz, 1})), noise(NoiseChoice(evidence).base()) {
     const ShapeAt shape{DriftShape::exponential_and_line, {std::log(30.0)}, {}};
     means.fitted = means.adjusting = linear_columns(evidence, shape);
+    means.impulses = evidence.missing();
     z = evidence.ordinates().tail(evidence.blocks() - 1);
     for (std::size_t k = 0; k < n; ++k)
       if (!std::isnan(samples[k])) present.push_back(static_cast<Index>(k));
@@ -127,10 +136,21 @@ TEST(OrdinateLikelihood, IsTheRestrictedLikelihoodOfTheDenseModel) {
 }
 
 TEST(OrdinateLikelihood, LeavesMissingBlocksOutByTheirColumns) {
-  const Both both(with_gap(record(4)));
-  ASSERT_EQ(both.evidence.dummies().cols(), 5);
-  expect_same_likelihood(both);
-  expect_same_least_squares(both);
+  for (const auto& blocks : {std::vector<std::size_t>{5, 40, 41, 42, 95}, many_blocks()}) {
+    const Both both(without(record(4), blocks));
+    ASSERT_EQ(both.means.impulses.size(), blocks.size());
+    expect_same_likelihood(both);
+    expect_same_least_squares(both);
+  }
+}
+
+TEST(OrdinateLikelihood, GramOfImpulsesIsThatOfTheirColumns) {
+  const Both both(without(record(4), many_blocks()));
+  const MatrixXd& X = both.means.fitted;
+  const VectorXd w = (both.noise.P * strengths(1.0, 0.3)).cwiseInverse();
+  const MatrixXd wanted = X.transpose() * w.asDiagonal() * X;
+  EXPECT_LT((GramOfColumns(both.means.impulses, w).of(X) - wanted).cwiseAbs().maxCoeff(),
+            1e-13 * wanted.maxCoeff());
 }
 
 // The scoring stops at about 1e-6 in the log-likelihood.
@@ -183,7 +203,7 @@ TEST(PromisedGain, IsTheScoreTestOfOneMoreColumn) {
   };
   const double shared = information(walk, white);
   const double own = information(walk, walk) - shared * shared / information(white, white);
-  const double promised = promised_gain(both.z, white, both.means, fit, walk);
+  const double promised = promised_gain(both.z, white, both.means, fit, {&walk, 1});
   EXPECT_NEAR(promised, score * score / own, 1e-3 * promised);
 }
 
@@ -193,7 +213,8 @@ TEST(PromisedGain, IsZeroForANegativeScore) {
   const Both both(samples);
   const MatrixXd white = both.noise.P.col(0);
   const OrdinateFit fit = fit_ordinates(both.z, white, both.means);
-  EXPECT_EQ(promised_gain(both.z, white, both.means, fit, both.noise.P.col(1)), 0.0);
+  const VectorXd walk = both.noise.P.col(1);
+  EXPECT_EQ(promised_gain(both.z, white, both.means, fit, {&walk, 1}), 0.0);
 }
 
 TEST(OrdinateLikelihood, ScalesWithTheData) {
