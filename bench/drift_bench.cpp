@@ -38,14 +38,12 @@ Recording made_up(std::size_t n) {
   recording.time.rate_hz = rate_hz;
   const double time_constant_s = 0.125 * static_cast<double>(n) / rate_hz;
   for (const char* name : {"acc_x", "acc_y", "acc_z"}) {
-    Channel& channel =
-        recording.channels.emplace_back(Channel{name, parse_unit("m/s^2").value(), {}});
-    channel.values.resize(n);
+    std::vector<double> values(n);
     double walk = 0.0;
     for (std::size_t k = 0; k < n; ++k)
-      channel.values[k] = 0.01 -
-                          0.05 * std::expm1(-static_cast<double>(k) / rate_hz / time_constant_s) +
-                          0.03 * normal(bits) + (walk += 2e-6 * normal(bits));
+      values[k] = 0.01 - 0.05 * std::expm1(-static_cast<double>(k) / rate_hz / time_constant_s) +
+                  0.03 * normal(bits) + (walk += 2e-6 * normal(bits));
+    recording.channels.push_back({name, parse_unit("m/s^2").value(), std::move(values)});
   }
   return recording;
 }
