@@ -46,7 +46,7 @@ void write(const std::string& path, std::size_t rows, bool has_stamps) {
   std::vector<double> stamps(block_rows);
   auto file = io::create_file(path);
   if (!file) give_up(file.error());
-  auto opened = io::mcap_writer(std::move(file).value(), {recording, has_stamps}, {});
+  auto opened = io::mcap::create(std::move(file).value(), {recording, has_stamps}, {});
   if (!opened) give_up(opened.error());
   const auto writer = std::move(opened).value();
   for (std::size_t k = 0; k < rows; k += block_rows) {
@@ -66,7 +66,7 @@ std::size_t read(const std::string& path) {
   auto source = io::open_file(path);
   if (!source) give_up(source.error());
   auto peek = std::make_unique<io::PeekSource>(std::move(source).value());
-  auto file = io::open_mcap(std::move(peek), {});
+  auto file = io::mcap::open(std::move(peek), {});
   if (!file) give_up(file.error());
   const auto tables = std::move(file).value();
   auto opened = tables->open(0, {});

@@ -71,8 +71,8 @@ double best_of_five(const std::function<void()>& work) {
 double read_table(const std::string& path) {
   auto random =
       random_bytes_of(std::make_unique<PeekSource>(std::move(open_file(path)).value()), Progress{});
-  auto contents = std::move(read_tdms_contents(std::move(random).value())).value();
-  auto table = std::move(open_tdms_table(contents, 0)).value();
+  auto contents = std::move(tdms::read_contents(std::move(random).value())).value();
+  auto table = std::move(tdms::open_table(contents, 0)).value();
   std::vector<std::vector<double>> block(channels, std::vector<double>(65'536));
   const std::vector<std::span<double>> into(block.begin(), block.end());
   double sum = 0.0;

@@ -31,24 +31,24 @@ io::BytePump feed_of(std::string_view& bytes) {
 
 // Selects datasets from a list of contents, before any values are read.
 void choose_from(std::string_view bytes) {
-  const auto catalogue = io::decode(bytes);
+  const auto catalogue = io::hdf5::decode(bytes);
   if (!catalogue) return;
-  const auto arrays = io::arrays_of(*catalogue);
-  const auto choice = io::choose_datasets(*catalogue, arrays, {});
+  const auto arrays = io::hdf5::arrays_of(*catalogue);
+  const auto choice = io::hdf5::choose_datasets(*catalogue, arrays, {});
   if (!choice) return;
   std::vector<std::vector<std::vector<double>>> values;
   std::size_t width = 0;
-  for (const io::MatTable& table : choice->tables) {
+  for (const io::matlab::Table& table : choice->tables) {
     values.push_back({{1.0, 2.0, 3.0}});
     width += table.width;
   }
   std::vector<Note> notes;
-  const auto rate_hz = io::hdf5_rate_hz(*catalogue, choice->tables, notes);
+  const auto rate_hz = io::hdf5::rate_hz_of(*catalogue, choice->tables, notes);
   const bool is_timed = rate_hz.has_value();
-  const auto headings = io::hdf5_headings(*catalogue, choice->tables, values, is_timed, notes);
+  const auto headings = io::hdf5::headings_of(*catalogue, choice->tables, values, is_timed, notes);
   require(headings.size() == width);
-  (void)io::hdf5_start_ns(*catalogue, choice->tables.front().array->path);
-  io::note_texts(*catalogue, choice->tables, notes);
+  (void)io::hdf5::start_ns_of(*catalogue, choice->tables.front().array->path);
+  io::hdf5::note_texts(*catalogue, choice->tables, notes);
 }
 
 // Input as the list of contents from a compromised child process.
@@ -63,11 +63,11 @@ void listen_to(std::string_view bytes) {
 
 // Input as the values from a compromised child process.
 void take_figures(std::string_view bytes) {
-  using enum io::Hdf5Figures;
-  std::vector<io::Hdf5Request> requests{{.name = "a", .rows = 20, .width = 3},
-                                        {.name = "b", .rows = 20, .width = 1, .figures = int64},
-                                        {.name = "c", .rows = 20, .width = 1, .figures = uint64}};
-  io::FigureStream stream(std::move(requests), feed_of(bytes));
+  using enum io::hdf5::Figures;
+  std::vector<io::hdf5::Request> requests{{.name = "a", .rows = 20, .width = 3},
+                                          {.name = "b", .rows = 20, .width = 1, .figures = int64},
+                                          {.name = "c", .rows = 20, .width = 1, .figures = uint64}};
+  io::hdf5::FigureStream stream(std::move(requests), feed_of(bytes));
   std::size_t rows = 0;
   for (;;) {
     const auto count = stream.next();
@@ -91,6 +91,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   listen_to(bytes);
   take_figures(bytes);
   choose_from(bytes);
-  (void)io::claims_hdf5(bytes.substr(0, 4096), "");
+  (void)io::hdf5::claims(bytes.substr(0, 4096), "");
   return 0;
 }

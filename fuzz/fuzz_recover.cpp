@@ -16,7 +16,7 @@ struct Saved {
 
 Saved salvaged(std::span<const std::byte> file) {
   std::string made;
-  auto recovery = proofmass::io::salvage_mcap(file, [&](const std::string& bytes) {
+  auto recovery = proofmass::io::mcap::salvage(file, [&](const std::string& bytes) {
     made += bytes;
     return proofmass::Status(proofmass::Done{});
   });

@@ -15,11 +15,11 @@ void read_all_tables(std::span<const std::byte> bytes) {
   auto source = std::make_unique<PeekSource>(open_memory(bytes));
   auto random = random_bytes_of(std::move(source), {});
   if (!random) return;
-  const auto contents = read_tdms_contents(std::move(random).value());
+  const auto contents = tdms::read_contents(std::move(random).value());
   if (!contents) return;
   constexpr std::size_t rows_at_once = 37;
   for (std::size_t group = 0; group < (*contents)->groups.size(); ++group) {
-    const auto table = open_tdms_table(*contents, group);
+    const auto table = tdms::open_table(*contents, group);
     if (!table) continue;
     const std::size_t columns = (*table)->head().columns;
     std::vector<std::vector<double>> block(columns, std::vector<double>(rows_at_once));

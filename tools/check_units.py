@@ -3,7 +3,8 @@
 
 The anonymous namespace of a source is visible to the other sources of its unit. The compiler would
 mostly reject equal names; but it would accept overloads, and a call in one source could then refer to
-the function of another. So a name must be unique to one source, unless
+the function of another. So a name must be unique to one source of the same namespace, or of one
+within the other, unless
   - it is an alias or a using-declaration, which may be repeated;
   - it is a function whose first parameter is of a class of ours in each source, and of a different
     one in each: no implicit conversion applies.
@@ -47,30 +48,36 @@ def declared(line: str) -> tuple[str, str] | None:
 
 
 def local_names(source: Path):
-    """The declarations in its anonymous namespaces."""
+    """Namespace, name and first parameter of the declarations in its anonymous namespaces."""
     inside = False
+    namespace = ""
     for line in source.read_text().splitlines():
+        if named := re.match(r"namespace ([\w:]+) \{", line):
+            namespace = named[1]
         if line == "namespace {":
             inside = True
         elif line == "}  // namespace":
             inside = False
         elif inside and re.match(r"[A-Za-z_\[]", line) and (found := declared(line)):
-            yield found
+            yield namespace, *found
 
 
 def unit_offences(folder: Path, unit: str, sources: list[str]) -> list[str]:
     found = []
-    seen: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
+    seen: dict[tuple[str, str], dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
+    local = [(source, *declaration) for source in sources for declaration in local_names(folder / source)]
+    for around, name in {(namespace, name) for _, namespace, name, _ in local}:
+        for source, namespace, other, parameter in local:
+            if other == name and (namespace + "::").startswith(around + "::"):
+                seen[around, name][source].add(parameter)
     for source in sources:
-        for name, parameter in local_names(folder / source):
-            seen[name][source].add(parameter)
         for number, line in enumerate((folder / source).read_text().splitlines(), 1):
             at = f"{(folder / source).relative_to(ROOT)}:{number}"
             if line.startswith("using namespace"):
                 found.append(f"{at}: a using-directive, which reaches the other sources of the unit {unit}")
             if (macro := re.match(r"#define (\w+)", line)) and f"#undef {macro[1]}" not in (folder / source).read_text():
                 found.append(f"{at}: {macro[1]} is not undefined again, and reaches the other sources of the unit {unit}")
-    for name, by_source in seen.items():
+    for (_, name), by_source in seen.items():
         if len(by_source) < 2:
             continue
         firsts = [{OWN_CLASS.match(p)[0] if OWN_CLASS.match(p) else None for p in ps} for ps in by_source.values()]
@@ -78,7 +85,7 @@ def unit_offences(folder: Path, unit: str, sources: list[str]) -> list[str]:
         if None in types or len(set(types)) < len(types):
             where = ", ".join(sorted(by_source))
             found.append(f"{folder.relative_to(ROOT)}: {name} in each of {where}, which are one unit, {unit}")
-    return found
+    return sorted(set(found))
 
 
 def main() -> int:

@@ -32,7 +32,7 @@ Result<Recovery> recover(const std::string& from, const std::string& to, const P
     }
     return part->append(bytes);
   };
-  auto saved = io::salvage_mcap(from, put, progress);
+  auto saved = io::mcap::salvage(from, put, progress);
   if (!part && !saved) return saved.error();
   if (saved && saved->messages == 0)
     saved = Error{Errc::corrupt, from + ": holds no message that could be saved"};

@@ -88,7 +88,7 @@ TEST(Recover, SavesWhatIsWholeWhereverAFileIsCut) {
       return Status(Done{});
     };
     const auto cut = std::as_bytes(std::span(whole).first(size));
-    const auto saved = io::salvage_mcap(cut, put);
+    const auto saved = io::mcap::salvage(cut, put);
     if (!saved) {
       ASSERT_EQ(saved.error().code, Errc::corrupt);
       ASSERT_EQ(most, 0u);

@@ -12,7 +12,7 @@
 namespace proofmass::fleet {
 
 /// Named fields, in the document's order.
-using Row = std::vector<std::pair<std::string, io::TableCell>>;
+using Row = std::vector<std::pair<std::string, io::parquet::TableCell>>;
 
 struct InputSum {
   std::string path, sha256;

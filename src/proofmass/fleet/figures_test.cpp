@@ -28,7 +28,8 @@ TEST(RowsOfDocument, AreOneAChannelWithEveryFigureUnderItsOwnName) {
                      {"reason", "x: ramp is null: too short; of all"}};
   ASSERT_EQ(found->rows.size(), 2U);
   EXPECT_EQ(found->rows[0], expected);
-  EXPECT_EQ(found->rows[1].back().second, io::TableCell("y: ramp is null: too short; of all"));
+  EXPECT_EQ(found->rows[1].back().second,
+            io::parquet::TableCell("y: ramp is null: too short; of all"));
   EXPECT_EQ(found->version, "0.1.0");
   ASSERT_EQ(found->inputs.size(), 1U);
   EXPECT_EQ(found->inputs[0].sha256, "00");

@@ -59,7 +59,7 @@ Result<Table> ndjson_table(const std::string& text) {
 Result<Table> table_of(const std::string& path, const std::string& duckdb_library) {
   const std::string ending = fs::path(path).extension().string();
   if (ending == ".parquet") {
-    const auto csv = io::parquet_as_csv(path, duckdb_library);
+    const auto csv = io::parquet::as_csv(path, duckdb_library);
     if (!csv) return csv.error();
     return csv_fields(*csv);
   }

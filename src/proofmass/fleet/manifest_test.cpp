@@ -63,9 +63,9 @@ TEST_F(Manifest, OfParquetIsReadAsTheSameTable) {
   const std::string library = given != nullptr ? given : fs::exists(here) ? here.string() : "";
   if (library.empty()) GTEST_SKIP() << "no libduckdb.so: set PROOFMASS_DUCKDB_LIB to its path";
   const std::string path = folder_ / "m.parquet";
-  auto created = io::ParquetTable::create(path, {{"path", true}, {"temperature", false}});
+  auto created = io::parquet::TableWriter::create(path, {{"path", true}, {"temperature", false}});
   ASSERT_TRUE(created);
-  io::ParquetTable table = std::move(created).value();
+  io::parquet::TableWriter table = std::move(created).value();
   ASSERT_TRUE(table.add({{std::string("a.csv")}, {21.5}}));
   ASSERT_TRUE(table.finish());
   const auto jobs = read_manifest(path, library);

@@ -16,7 +16,7 @@
 namespace proofmass::fleet {
 namespace {
 
-using io::TableCell;
+using io::parquet::TableCell;
 
 /// The table's columns in their order, each known by its name.
 class Columns {
@@ -27,10 +27,10 @@ class Columns {
     if (std::holds_alternative<std::string>(cell)) columns_[place->second].is_text = true;
   }
   [[nodiscard]] std::size_t place(const std::string& name) const { return places_.at(name); }
-  [[nodiscard]] const std::vector<io::TableColumn>& all() const { return columns_; }
+  [[nodiscard]] const std::vector<io::parquet::TableColumn>& all() const { return columns_; }
 
  private:
-  std::vector<io::TableColumn> columns_;
+  std::vector<io::parquet::TableColumn> columns_;
   std::map<std::string, std::size_t> places_;
 };
 
@@ -65,7 +65,7 @@ Row full_row(const Entry& entry, const Row& figures) {
 /// Rows on their way into the file, a group at a time.
 class Groups {
  public:
-  Groups(io::ParquetTable& table, const Columns& columns)
+  Groups(io::parquet::TableWriter& table, const Columns& columns)
       : table_(&table), columns_(&columns), cells_(columns.all().size()) {}
 
   Status add(const Row& row) {
@@ -81,7 +81,7 @@ class Groups {
   }
 
  private:
-  io::ParquetTable* table_;
+  io::parquet::TableWriter* table_;
   const Columns* columns_;
   std::vector<std::vector<TableCell>> cells_;
 };
@@ -95,10 +95,10 @@ Status write_rows(const Results& results) {
     return Done{};
   });
   if (!named) return named;
-  auto created = io::ParquetTable::create(
+  auto created = io::parquet::TableWriter::create(
       (std::filesystem::path(results.folder()) / "results.parquet").string(), columns.all());
   if (!created) return created.error();
-  io::ParquetTable table = std::move(created).value();
+  io::parquet::TableWriter table = std::move(created).value();
   Groups groups(table, columns);
   const Status added = results.visit([&](const Entry& entry) -> Status {
     for (const Row& figures : entry.rows)

@@ -121,7 +121,7 @@ TEST_F(ResultsFolder, MakesTablesThatOthersRead) {
             "{\"file\":\"c.csv\",\"reason\":\"is broken\",\"verb\":\"noise\",\"flags\":[\"--rate\","
             "\"100\"],\"sensor\":\"S1\",\"serial\":\"0012\",\"temperature\":\"21.5\"}\n");
   if (library.empty()) GTEST_SKIP() << "no libduckdb.so: set PROOFMASS_DUCKDB_LIB to its path";
-  const auto csv = io::parquet_as_csv((folder_ / "results.parquet").string(), library);
+  const auto csv = io::parquet::as_csv((folder_ / "results.parquet").string(), library);
   ASSERT_TRUE(csv) << csv.error().message;
   EXPECT_EQ(
       *csv,

@@ -44,7 +44,7 @@ class Fielded {
   }
 
  private:
-  std::map<std::string_view, const io::TableCell*> cells_;
+  std::map<std::string_view, const io::parquet::TableCell*> cells_;
 };
 
 // What follows from another figure alone.

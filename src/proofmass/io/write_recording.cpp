@@ -12,28 +12,25 @@
 namespace proofmass::io {
 namespace {
 
-using Opener = Result<std::unique_ptr<RecordingWriter>> (*)(std::unique_ptr<OutputFile>,
-                                                            const WriterHead&,
-                                                            const WriteOptions&);
 /// Support of a format for labels: beside the samples, or after them.
 enum class LabelRoom { none, beside, behind };
 
 struct Extension {
   std::string_view ending;
-  Opener open;
+  CreateWriter* create;
   LabelRoom labels = LabelRoom::none;
   bool is_compressed = false;
 };
 constexpr std::array extensions = std::to_array<Extension>({
-    {".csv", csv_writer, LabelRoom::beside},
-    {".csv.gz", csv_writer, LabelRoom::beside, true},
-    {".npy", npy_writer},
-    {".mat", mat_writer},
-    {".tdms", tdms_writer, LabelRoom::behind},
-    {".h5", hdf5_writer, LabelRoom::behind},
-    {".hdf5", hdf5_writer, LabelRoom::behind},
-    {".mcap", mcap_writer, LabelRoom::behind},
-    {".parquet", parquet_writer, LabelRoom::behind},
+    {".csv", create_csv, LabelRoom::beside},
+    {".csv.gz", create_csv, LabelRoom::beside, true},
+    {".npy", create_npy},
+    {".mat", matlab::create},
+    {".tdms", tdms::create, LabelRoom::behind},
+    {".h5", hdf5::create, LabelRoom::behind},
+    {".hdf5", hdf5::create, LabelRoom::behind},
+    {".mcap", mcap::create, LabelRoom::behind},
+    {".parquet", parquet::create, LabelRoom::behind},
 });
 
 std::string all_endings() {
@@ -63,14 +60,14 @@ Result<std::unique_ptr<RecordingWriter>> open_writer(const std::string& path,
   if (extension == nullptr)
     return Error{Errc::unsupported,
                  path + ": the extension names no format that is written: " + all_endings()};
-  if (extension->open != csv_writer && is_special_file(path))
+  if (extension->create != create_csv && is_special_file(path))
     return Error{Errc::unsupported,
                  path + ": is not a regular file: only CSV can be written to it"};
   auto file = create_file(path);
   if (!file) return file.error();
   std::unique_ptr<OutputFile> output = std::move(file).value();
   if (extension->is_compressed) output = gzipped(std::move(output));
-  auto writer = extension->open(std::move(output), head, options);
+  auto writer = extension->create(std::move(output), head, options);
   if (!writer) return writer.error().at(path);
   return writer;
 }

@@ -19,7 +19,7 @@ namespace proofmass::acquire {
 /// Whole records of a file, and the file's contents once they are written.
 struct DiskPiece {
   std::string bytes{};
-  io::McapMark mark{};
+  io::mcap::Mark mark{};
   std::uint64_t rows = 0;  ///< sample rows in the file by then
 };
 

@@ -79,8 +79,8 @@ std::string RecordFile::front(const RecordFileHead& head) {
   for (std::size_t k = 0; k < head.sensor_files.size(); ++k)
     mcap_.add_attachment(is_only ? "sensor.toml" : fmt::format("sensor.{}.toml", k + 1),
                          "application/toml", 0, head.sensor_files[k]);
-  events_ = mcap_.add_json_topic("events", std::string(io::mcap_event_schema));
-  clock_ = mcap_.add_json_topic("clock", std::string(io::mcap_clock_schema));
+  events_ = mcap_.add_json_topic("events", std::string(io::mcap::event_schema));
+  clock_ = mcap_.add_json_topic("clock", std::string(io::mcap::clock_schema));
   return mcap_.take_bytes();
 }
 
@@ -98,7 +98,7 @@ void RecordFile::begin(double origin_s, std::int64_t start_ns) {
 }
 
 std::uint64_t RecordFile::log_ns(double time_s) const {
-  return io::mcap_log_ns(start_ns_, time_s);
+  return io::mcap::log_time_ns(start_ns_, time_s);
 }
 
 void RecordFile::add_rows(const Block& block) {

@@ -72,7 +72,7 @@ class RecordFile {
  private:
   /// Rows of a topic that are not yet in a message.
   struct Waiting {
-    io::McapRecording::Topic topic = 0;
+    io::mcap::RecordingEncoder::Topic topic = 0;
     Rows rows{};
     std::uint64_t written = 0;  ///< rows in messages
     std::int64_t since_ns = 0;
@@ -91,7 +91,7 @@ class RecordFile {
 
   DiskWriter& disk_;
   std::shared_ptr<PartFile> part_;
-  io::McapRecording mcap_;
+  io::mcap::RecordingEncoder mcap_;
   Recording head_;
   std::vector<Channel> estimate_columns_;
   signal::RunningAudit audit_;
@@ -107,7 +107,7 @@ class RecordFile {
   bool begins_stretch_ = false;
   Waiting samples_, estimates_;
   std::vector<double> shifted_s_;  ///< stamps for the audit
-  io::McapRecording::Topic events_ = 0, clock_ = 0;
+  io::mcap::RecordingEncoder::Topic events_ = 0, clock_ = 0;
   std::optional<std::int64_t> chunk_since_ns_;
 };
 

@@ -192,7 +192,7 @@ class CsvWriter final : public RecordingWriter {
 
 }  // namespace
 
-Result<std::unique_ptr<RecordingWriter>> csv_writer(std::unique_ptr<OutputFile> file,
+Result<std::unique_ptr<RecordingWriter>> create_csv(std::unique_ptr<OutputFile> file,
                                                     const WriterHead& head,
                                                     const WriteOptions&) {
   const Recording& recording = head.recording;

@@ -2,7 +2,7 @@
 #include "proofmass/io/hdf5/library.hpp"
 #include "proofmass/io/reading/recording_writers.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
 Error absent() {
@@ -11,23 +11,23 @@ Error absent() {
 
 }  // namespace
 
-bool has_hdf5_library() {
+bool has_library() {
   return false;
 }
 
-Result<Hdf5Catalogue> list_hdf5(const Hdf5Source&, bool) {
+Result<Catalogue> list_datasets(const Source&, bool) {
   return absent();
 }
 
-Status read_hdf5(const Hdf5Source&, const std::vector<Hdf5Request>&, const ByteSink&) {
+Status read_values(const Source&, const std::vector<Request>&, const ByteSink&) {
   return absent();
 }
 
-Result<std::unique_ptr<RecordingWriter>> hdf5_writer(std::unique_ptr<OutputFile>,
-                                                     const WriterHead&,
-                                                     const WriteOptions&) {
+Result<std::unique_ptr<RecordingWriter>> create(std::unique_ptr<OutputFile>,
+                                                const WriterHead&,
+                                                const WriteOptions&) {
   return Error{Errc::unsupported,
                "HDF5 is not written: this program was built without the HDF5 library"};
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

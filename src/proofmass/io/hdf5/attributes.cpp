@@ -6,7 +6,7 @@
 
 #include "proofmass/io/hdf5/handle.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
 constexpr std::size_t most_texts = 64;
@@ -32,8 +32,8 @@ std::vector<std::string> fixed_texts(hid_t attribute, hid_t type, std::size_t co
 }
 
 std::vector<std::string> variable_texts(hid_t attribute, hid_t space, std::size_t count) {
-  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  const Hdf5Handle stored(H5Aget_type(attribute), H5Tclose);
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  const Handle stored(H5Aget_type(attribute), H5Tclose);
   H5Tset_size(type, H5T_VARIABLE);
   H5Tset_cset(type, H5Tget_cset(stored));
   std::vector<char*> pointers(count, nullptr);
@@ -46,10 +46,10 @@ std::vector<std::string> variable_texts(hid_t attribute, hid_t space, std::size_
   return texts;
 }
 
-Hdf5Attribute read_attribute(hid_t attribute, const char* name) {
-  Hdf5Attribute read{.owner = {}, .name = name};
-  const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
-  const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
+Attribute read_attribute(hid_t attribute, const char* name) {
+  Attribute read{.owner = {}, .name = name};
+  const Handle type(H5Aget_type(attribute), H5Tclose);
+  const Handle space(H5Aget_space(attribute), H5Sclose);
   const hssize_t points = H5Sget_simple_extent_npoints(space);
   if (!type || points < 1 || static_cast<std::size_t>(points) > most_texts) return read;
   const auto count = static_cast<std::size_t>(points);
@@ -75,19 +75,19 @@ bool has_attribute(hid_t object, const char* name) {
 
 std::string text_attribute(hid_t object, const char* name) {
   if (!has_attribute(object, name)) return {};
-  const Hdf5Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
   if (!attribute) return {};
-  const Hdf5Attribute read = read_attribute(attribute, name);
+  const Attribute read = read_attribute(attribute, name);
   return read.texts.size() == 1 ? read.texts[0] : "";
 }
 
-std::vector<Hdf5Attribute> attributes_of(hid_t object) {
-  std::vector<Hdf5Attribute> found;
+std::vector<Attribute> attributes_of(hid_t object) {
+  std::vector<Attribute> found;
   const auto keep = [](hid_t owner, const char* name, const H5A_info_t*, void* into) noexcept {
-    auto& list = *static_cast<std::vector<Hdf5Attribute>*>(into);
-    const Hdf5Handle attribute(H5Aopen(owner, name, H5P_DEFAULT), H5Aclose);
+    auto& list = *static_cast<std::vector<Attribute>*>(into);
+    const Handle attribute(H5Aopen(owner, name, H5P_DEFAULT), H5Aclose);
     if (!attribute) return herr_t{0};
-    Hdf5Attribute read = read_attribute(attribute, name);
+    Attribute read = read_attribute(attribute, name);
     if (!read.texts.empty() || read.figure) list.push_back(std::move(read));
     return herr_t{list.size() < most_texts ? 0 : 1};
   };
@@ -96,4 +96,4 @@ std::vector<Hdf5Attribute> attributes_of(hid_t object) {
   return found;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

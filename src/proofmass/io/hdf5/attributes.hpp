@@ -6,7 +6,7 @@
 
 #include "proofmass/io/hdf5/catalogue.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
 [[nodiscard]] bool has_attribute(hid_t object, const char* name);
 
@@ -14,6 +14,6 @@ namespace proofmass::io {
 [[nodiscard]] std::string text_attribute(hid_t object, const char* name);
 
 /// The attributes of an object that are texts, up to 64 each, or a single number.
-[[nodiscard]] std::vector<Hdf5Attribute> attributes_of(hid_t object);
+[[nodiscard]] std::vector<Attribute> attributes_of(hid_t object);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

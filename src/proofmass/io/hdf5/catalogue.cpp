@@ -4,11 +4,11 @@
 
 #include "proofmass/io/bytes/subprocess_words.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
 /// True if that many values are possible.
-bool is_possible(const Hdf5Dataset& dataset) {
+bool is_possible(const Dataset& dataset) {
   constexpr std::uint64_t most_figures = std::uint64_t{1} << 48;
   std::uint64_t figures = 1;
   for (const std::uint64_t length : dataset.shape)
@@ -18,9 +18,9 @@ bool is_possible(const Hdf5Dataset& dataset) {
          dataset.group_length < dataset.path.size();
 }
 
-Hdf5Dataset read_dataset(WordReader& from) {
+Dataset read_dataset(WordReader& from) {
   constexpr std::size_t most_dimensions = 32;
-  Hdf5Dataset dataset;
+  Dataset dataset;
   dataset.path = from.text();
   dataset.address = from.bytes_text(usual_text);
   dataset.type = from.text();
@@ -32,9 +32,9 @@ Hdf5Dataset read_dataset(WordReader& from) {
   return dataset;
 }
 
-Hdf5Attribute decode_attribute(WordReader& from) {
+Attribute decode_attribute(WordReader& from) {
   constexpr std::size_t most_texts = 64;
-  Hdf5Attribute attribute;
+  Attribute attribute;
   attribute.owner = from.text();
   attribute.name = from.text();
   attribute.texts = from.list(most_texts, [&] { return from.text(); });
@@ -45,9 +45,9 @@ Hdf5Attribute decode_attribute(WordReader& from) {
 
 }  // namespace
 
-std::string encode(const Hdf5Catalogue& catalogue) {
+std::string encode(const Catalogue& catalogue) {
   WordWriter to;
-  to.list(catalogue.datasets, [&](const Hdf5Dataset& dataset) {
+  to.list(catalogue.datasets, [&](const Dataset& dataset) {
     to.text(dataset.path);
     to.text(dataset.address);
     to.text(dataset.type);
@@ -57,7 +57,7 @@ std::string encode(const Hdf5Catalogue& catalogue) {
     to.number(dataset.is_compound ? 1 : 0);
     to.figure(dataset.figure);
   });
-  to.list(catalogue.attributes, [&](const Hdf5Attribute& attribute) {
+  to.list(catalogue.attributes, [&](const Attribute& attribute) {
     to.text(attribute.owner);
     to.text(attribute.name);
     to.list(attribute.texts, [&](const std::string& text) { to.text(text); });
@@ -75,13 +75,13 @@ std::string encode(const Hdf5Catalogue& catalogue) {
   return to.take();
 }
 
-Result<Hdf5Catalogue> decode(std::string_view bytes) {
+Result<Catalogue> decode(std::string_view bytes) {
   WordReader from(bytes);
-  Hdf5Catalogue catalogue;
-  catalogue.datasets = from.list(most_hdf5_objects, [&] { return read_dataset(from); });
-  catalogue.attributes = from.list(most_hdf5_objects, [&] { return decode_attribute(from); });
-  catalogue.skipped = from.list(most_hdf5_objects, [&] { return from.text(); });
-  catalogue.runs = from.list(most_hdf5_runs, [&] {
+  Catalogue catalogue;
+  catalogue.datasets = from.list(most_objects, [&] { return read_dataset(from); });
+  catalogue.attributes = from.list(most_objects, [&] { return decode_attribute(from); });
+  catalogue.skipped = from.list(most_objects, [&] { return from.text(); });
+  catalogue.runs = from.list(most_runs, [&] {
     Label run;
     run.text = from.text();
     run.first = from.number();
@@ -95,4 +95,4 @@ Result<Hdf5Catalogue> decode(std::string_view bytes) {
   return catalogue;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -11,10 +11,10 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
 /// A numeric dataset in an HDF5 file.
-struct Hdf5Dataset {
+struct Dataset {
   std::string path;     ///< for display: "imu/acc"; for a MAT file "imu.acc", "runs(2).acc"
   std::string address;  ///< for the library: "/imu/acc", "/#refs#/b"
   std::string type;     ///< "float64", "int16", "bool"; for a MAT file the class, "double"
@@ -28,7 +28,7 @@ struct Hdf5Dataset {
 };
 
 /// An attribute of a dataset, a group, or the file.
-struct Hdf5Attribute {
+struct Attribute {
   std::string owner;  ///< path of the object; empty for the file
   std::string name;
   std::vector<std::string> texts{};
@@ -37,9 +37,9 @@ struct Hdf5Attribute {
 };
 
 /// Contents of an HDF5 file.
-struct Hdf5Catalogue {
-  std::vector<Hdf5Dataset> datasets;
-  std::vector<Hdf5Attribute> attributes;
+struct Catalogue {
+  std::vector<Dataset> datasets;
+  std::vector<Attribute> attributes;
   std::vector<std::string> skipped;  ///< "title (text)", "f (link)"
   std::vector<Label> runs{};         ///< runs of labelled samples; not checked
   std::string run_channel{};         ///< Recording::label_channel
@@ -47,14 +47,14 @@ struct Hdf5Catalogue {
 };
 
 /// Maximum number of listed objects; a user would not distinguish more.
-inline constexpr std::size_t most_hdf5_objects = 4096;
-inline constexpr std::size_t most_hdf5_runs = std::size_t{1} << 16;
+inline constexpr std::size_t most_objects = 4096;
+inline constexpr std::size_t most_runs = std::size_t{1} << 16;
 inline constexpr std::size_t most_catalogue_bytes = std::size_t{8} << 20;
 
 /// Serialises a catalogue. decode() trusts nothing: lengths are checked against the available
 /// bytes, names (but not addresses) are made printable, impossible shapes are rejected. Errors of
 /// decode: corrupt.
-[[nodiscard]] std::string encode(const Hdf5Catalogue& catalogue);
-[[nodiscard]] Result<Hdf5Catalogue> decode(std::string_view bytes);
+[[nodiscard]] std::string encode(const Catalogue& catalogue);
+[[nodiscard]] Result<Catalogue> decode(std::string_view bytes);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -3,11 +3,11 @@
 #include <cstring>
 #include <gtest/gtest.h>
 
-namespace proofmass::io::hdf5_catalogue_test {
+namespace proofmass::io::hdf5::catalogue_test {
 namespace {
 
-Hdf5Catalogue example() {
-  Hdf5Catalogue catalogue;
+Catalogue example() {
+  Catalogue catalogue;
   catalogue.datasets.push_back({.path = "imu/acc",
                                 .address = "/imu/acc",
                                 .type = "float64",
@@ -21,7 +21,7 @@ Hdf5Catalogue example() {
   return catalogue;
 }
 
-TEST(Hdf5Catalogue, ComesBackAsItWas) {
+TEST(Catalogue, ComesBackAsItWas) {
   const auto read = decode(encode(example()));
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->datasets.size(), 2u);
@@ -36,14 +36,14 @@ TEST(Hdf5Catalogue, ComesBackAsItWas) {
   EXPECT_TRUE(read->is_cut);
 }
 
-TEST(Hdf5Catalogue, IsRefusedWhereverItBreaksOffOrGoesOn) {
+TEST(Catalogue, IsRefusedWhereverItBreaksOffOrGoesOn) {
   const std::string whole = encode(example());
   for (std::size_t size = 0; size < whole.size(); ++size)
     EXPECT_FALSE(decode(std::string_view(whole).substr(0, size))) << size;
   EXPECT_FALSE(decode(whole + '\0'));
 }
 
-TEST(Hdf5Catalogue, BelievesNoLength) {
+TEST(Catalogue, BelievesNoLength) {
   const std::string whole = encode(example());
   for (std::size_t byte = 0; byte < whole.size(); ++byte)
     for (const char value : {'\x01', '\x7F', '\xFF'}) {
@@ -51,16 +51,16 @@ TEST(Hdf5Catalogue, BelievesNoLength) {
       changed[byte] = value;
       const auto read = decode(changed);
       if (!read) continue;
-      for (const Hdf5Dataset& dataset : read->datasets)
+      for (const Dataset& dataset : read->datasets)
         EXPECT_LT(dataset.group_length, dataset.path.size());
     }
-  Hdf5Catalogue impossible = example();
+  Catalogue impossible = example();
   impossible.datasets[0].shape = {std::uint64_t{1} << 40, std::uint64_t{1} << 40};
   EXPECT_FALSE(decode(encode(impossible)));
 }
 
-TEST(Hdf5Catalogue, HasTextsOfOneLine) {
-  Hdf5Catalogue catalogue = example();
+TEST(Catalogue, HasTextsOfOneLine) {
+  Catalogue catalogue = example();
   catalogue.attributes[0].texts = {"two\nlines\x1b[31m"};
   const auto read = decode(encode(catalogue));
   ASSERT_TRUE(read);
@@ -68,4 +68,4 @@ TEST(Hdf5Catalogue, HasTextsOfOneLine) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::hdf5_catalogue_test
+}  // namespace proofmass::io::hdf5::catalogue_test

@@ -10,7 +10,7 @@
 #include "proofmass/io/hdf5/path.hpp"
 #include "proofmass/io/names.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
 /// A name as typed by the user: "/imu/acc/" is "imu/acc".
@@ -22,11 +22,11 @@ std::string_view bare_path(std::string_view name) {
 
 class Chooser {
  public:
-  Chooser(const Hdf5Catalogue& catalogue,
-          const std::vector<MatArray>& arrays,
+  Chooser(const Catalogue& catalogue,
+          const std::vector<matlab::Array>& arrays,
           const ReadOptions& options)
       : catalogue_(catalogue), arrays_(arrays), options_(options) {
-    for (const MatArray& array : arrays)
+    for (const matlab::Array& array : arrays)
       if (const auto table = table_in(array)) tables_.push_back(*table);
   }
 
@@ -42,9 +42,9 @@ class Chooser {
     return Done{};
   }
 
-  Result<Hdf5Choice> choice() const {
-    Hdf5Choice choice;
-    Result<std::vector<MatTable>> tables = chosen_tables(tables_, chosen_);
+  Result<Choice> choice() const {
+    Choice choice;
+    Result<std::vector<matlab::Table>> tables = matlab::chosen_tables(tables_, chosen_);
     if (!tables) return tables.error();
     choice.tables = std::move(tables).value();
     report(choice);
@@ -57,7 +57,7 @@ class Chooser {
   /// Selects the datasets of the requested channels instead; false if there are none, or they are
   /// selected already.
   bool take_asked_for() {
-    std::set<const MatArray*> asked = arrays_asked_for(tables_, options_);
+    std::set<const matlab::Array*> asked = matlab::arrays_asked_for(tables_, options_);
     if (std::ranges::includes(chosen_, asked)) return false;
     chosen_ = std::move(asked);
     return true;
@@ -67,20 +67,20 @@ class Chooser {
   Status take_best(std::string_view within) {
     struct Weight {
       bool may_be_samples = false;
-      TableKind kind = TableKind::other;
+      matlab::TableKind kind = matlab::TableKind::other;
       std::size_t figures = 0;
       auto operator<=>(const Weight&) const = default;
     };
     std::size_t longest = 0;
-    for (const MatTable& table : tables_)
+    for (const matlab::Table& table : tables_)
       if (is_within(table.array->path, within)) longest = std::max(longest, table.rows);
     std::map<std::pair<std::string_view, std::size_t>, Weight> weights;
-    for (const MatTable& table : tables_) {
+    for (const matlab::Table& table : tables_) {
       if (!is_within(table.array->path, within)) continue;
       Weight& weight = weights[{table.array->group(), table.rows}];
-      weight.may_be_samples = may_be_samples(table, longest);
+      weight.may_be_samples = matlab::may_be_samples(table, longest);
       weight.figures += table.figures();
-      weight.kind = std::max(weight.kind, kind_of(table));
+      weight.kind = std::max(weight.kind, matlab::kind_of(table));
     }
     const auto best =
         std::ranges::max_element(weights, {}, [](const auto& entry) { return entry.second; });
@@ -91,17 +91,17 @@ class Chooser {
   }
 
   /// Rows of named fields are samples, however few.
-  [[nodiscard]] std::optional<MatTable> table_in(const MatArray& array) const {
-    if (!dataset_of(array).is_compound) return table_of(array);
-    const MatTable table{&array, array.shape[1], array.shape[0], true};
-    const bool is_table = table.rows > 1 && table.width > 0 && table.width <= most_mat_channels;
+  [[nodiscard]] std::optional<matlab::Table> table_in(const matlab::Array& array) const {
+    if (!dataset_of(array).is_compound) return matlab::table_of(array);
+    const matlab::Table table{&array, array.shape[1], array.shape[0], true};
+    const bool is_table = table.rows > 1 && table.width > 0 && table.width <= matlab::most_channels;
     return is_table ? std::optional(table) : std::nullopt;
   }
 
   /// Adds the datasets of that length in a group, around it, and below it or the group that has its
   /// time.
   void take_around(std::string_view group, std::size_t rows) {
-    const MatTable* time = time_in(group, rows);
+    const matlab::Table* time = time_in(group, rows);
     if (time != nullptr && dataset_of(*time->array).is_compound) {
       chosen_.insert(time->array);
       return;
@@ -115,7 +115,7 @@ class Chooser {
       if (above.empty()) break;
     }
     std::size_t columns = 0;
-    for (const MatTable& table : tables_) {
+    for (const matlab::Table& table : tables_) {
       const std::string_view own = table.array->group();
       const bool belongs =
           is_within(group, own) || (is_within(own, scope) && !has_time_below(scope, own, rows));
@@ -131,10 +131,10 @@ class Chooser {
     return time_in(group, rows) != nullptr;
   }
 
-  [[nodiscard]] const MatTable* time_in(std::string_view group, std::size_t rows) const {
-    std::vector<const MatTable*> vectors;
+  [[nodiscard]] const matlab::Table* time_in(std::string_view group, std::size_t rows) const {
+    std::vector<const matlab::Table*> vectors;
     std::vector<std::string> names;
-    for (const MatTable& table : tables_) {
+    for (const matlab::Table& table : tables_) {
       const bool is_there = table.rows == rows && table.array->group() == group;
       if (is_there && dataset_of(*table.array).is_compound && has_time_field(table)) return &table;
       if (is_there && table.width == 1) {
@@ -146,7 +146,7 @@ class Chooser {
     return time ? vectors[*time] : nullptr;
   }
 
-  [[nodiscard]] bool has_time_field(const MatTable& table) const {
+  [[nodiscard]] bool has_time_field(const matlab::Table& table) const {
     const auto columns = std::ranges::find_if(catalogue_.attributes, [&](const auto& attribute) {
       return attribute.owner == table.array->path && attribute.name == "columns";
     });
@@ -167,13 +167,13 @@ class Chooser {
     const std::string there = others();
     if (there.empty()) return "holds no dataset";
     return fmt::format("holds no table of samples (numbers, at most {} channels): it has {}",
-                       most_mat_channels, there);
+                       matlab::most_channels, there);
   }
 
   Status take_named(const std::string& name) {
     const std::string_view path = bare_path(name);
-    const auto named = [&](const MatArray& array) { return array.path == path; };
-    const auto alike = [&](const MatArray& array) { return lower(array.path) == lower(path); };
+    const auto named = [&](const matlab::Array& array) { return array.path == path; };
+    const auto alike = [&](const matlab::Array& array) { return lower(array.path) == lower(path); };
     auto array = std::ranges::find_if(arrays_, named);
     if (array == arrays_.end()) array = std::ranges::find_if(arrays_, alike);
     if (array != arrays_.end()) {
@@ -181,7 +181,7 @@ class Chooser {
       if (table_in(*array)) return Done{};
       return Error{Errc::invalid_argument,
                    fmt::format("{} is not a table of samples, at most {} channels",
-                               description(dataset_of(*array)), most_mat_channels)};
+                               description(dataset_of(*array)), matlab::most_channels)};
     }
     if (!path.empty() && take_best(path)) return Done{};
     return Error{
@@ -192,15 +192,15 @@ class Chooser {
   /// Adds the time beside the named datasets, or in the nearest group around them.
   void add_time() {
     const auto first = std::ranges::find_if(
-        tables_, [&](const MatTable& table) { return chosen_.contains(table.array); });
+        tables_, [&](const matlab::Table& table) { return chosen_.contains(table.array); });
     for (std::string_view group = first->array->group();; group = group_of(group)) {
-      const MatTable* time = time_in(group, first->rows);
+      const matlab::Table* time = time_in(group, first->rows);
       if (time != nullptr) chosen_.insert(time->array);
       if (time != nullptr || group.empty()) return;
     }
   }
 
-  [[nodiscard]] const Hdf5Dataset& dataset_of(const MatArray& array) const {
+  [[nodiscard]] const Dataset& dataset_of(const matlab::Array& array) const {
     return catalogue_.datasets[static_cast<std::size_t>(&array - arrays_.data())];
   }
 
@@ -208,8 +208,8 @@ class Chooser {
   [[nodiscard]] std::string others() const {
     constexpr std::size_t most = 8;
     std::vector<std::string> items;
-    for (const MatArray& array : arrays_)
-      if (!chosen_.contains(&array) && !is_rate_name(MatTable{&array}.name()))
+    for (const matlab::Array& array : arrays_)
+      if (!chosen_.contains(&array) && !matlab::is_rate_name(matlab::Table{&array}.name()))
         items.push_back(description(dataset_of(array)));
     items.insert(items.end(), catalogue_.skipped.begin(), catalogue_.skipped.end());
     std::string text;
@@ -219,7 +219,7 @@ class Chooser {
     return text;
   }
 
-  void report(Hdf5Choice& choice) const {
+  void report(Choice& choice) const {
     constexpr std::size_t most = 12;
     const auto add = [&](Severity severity, std::string text) {
       choice.notes.push_back({severity, std::move(text)});
@@ -234,10 +234,10 @@ class Chooser {
             ? fmt::format(": what has {} samples and lies together", choice.tables[0].rows)
             : "";
     add(Severity::info, fmt::format("HDF5: {} read{}", read, why));
-    for (const MatTable& table : choice.tables)
+    for (const matlab::Table& table : choice.tables)
       if (table.width > 1 && !table.is_turned)
         add(Severity::info, table.array->path + " is channels x samples: turned");
-    for (const MatTable& table : choice.tables)
+    for (const matlab::Table& table : choice.tables)
       if (table.array->is_complex)
         add(Severity::warning, table.array->path + " is complex: its real part is read");
     if (const std::string rest = others(); !rest.empty())
@@ -246,23 +246,23 @@ class Chooser {
     if (catalogue_.is_cut)
       add(Severity::warning, fmt::format("of the objects in the file only the first {} were "
                                          "looked at",
-                                         most_hdf5_objects));
+                                         most_objects));
   }
 
-  const Hdf5Catalogue& catalogue_;
-  const std::vector<MatArray>& arrays_;
+  const Catalogue& catalogue_;
+  const std::vector<matlab::Array>& arrays_;
   const ReadOptions& options_;
-  std::vector<MatTable> tables_;
-  std::set<const MatArray*> chosen_;
+  std::vector<matlab::Table> tables_;
+  std::set<const matlab::Array*> chosen_;
 };
 
 }  // namespace
 
-std::vector<MatArray> arrays_of(const Hdf5Catalogue& catalogue) {
-  std::vector<MatArray> arrays;
+std::vector<matlab::Array> arrays_of(const Catalogue& catalogue) {
+  std::vector<matlab::Array> arrays;
   arrays.reserve(catalogue.datasets.size());
-  for (const Hdf5Dataset& dataset : catalogue.datasets) {
-    MatArray array;
+  for (const Dataset& dataset : catalogue.datasets) {
+    matlab::Array array;
     array.path = dataset.path;
     // A table of named fields is its own group: no dataset is beside its fields.
     array.group_length = dataset.is_compound ? dataset.path.size() : dataset.group_length;
@@ -275,7 +275,7 @@ std::vector<MatArray> arrays_of(const Hdf5Catalogue& catalogue) {
   return arrays;
 }
 
-std::string description(const Hdf5Dataset& dataset) {
+std::string description(const Dataset& dataset) {
   std::string shape;
   for (const std::uint64_t length : dataset.shape) shape += fmt::format("{} x ", length);
   if (shape.empty()) return fmt::format("{} (a single {})", dataset.path, dataset.type);
@@ -283,12 +283,12 @@ std::string description(const Hdf5Dataset& dataset) {
   return fmt::format("{} ({} {})", dataset.path, shape, dataset.type);
 }
 
-Result<Hdf5Choice> choose_datasets(const Hdf5Catalogue& catalogue,
-                                   const std::vector<MatArray>& arrays,
-                                   const ReadOptions& options) {
+Result<Choice> choose_datasets(const Catalogue& catalogue,
+                               const std::vector<matlab::Array>& arrays,
+                               const ReadOptions& options) {
   Chooser chooser(catalogue, arrays, options);
   if (const Status done = chooser.run(); !done) return done.error();
   return chooser.choice();
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

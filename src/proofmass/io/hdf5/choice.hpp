@@ -8,20 +8,20 @@
 #include "proofmass/io/matlab/mat_choice.hpp"
 #include "proofmass/io/read_recording.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
 /// The datasets as arrays of a MAT file, the input of table selection. The fastest dimension comes
 /// first, as there: is_turned of a table then means that whole samples are contiguous. `catalogue`
 /// must outlive them.
-[[nodiscard]] std::vector<MatArray> arrays_of(const Hdf5Catalogue& catalogue);
+[[nodiscard]] std::vector<matlab::Array> arrays_of(const Catalogue& catalogue);
 
 /// "imu/acc (5000 x 3 float64)", dimensions in the order of the file.
-[[nodiscard]] std::string description(const Hdf5Dataset& dataset);
+[[nodiscard]] std::string description(const Dataset& dataset);
 
 /// The datasets that form the recording.
-struct Hdf5Choice {
-  std::vector<MatTable> tables;  ///< of equal length, in the order of the file
-  std::vector<Note> notes;       ///< the selection, its reason, and the alternatives
+struct Choice {
+  std::vector<matlab::Table> tables;  ///< of equal length, in the order of the file
+  std::vector<Note> notes;            ///< the selection, its reason, and the alternatives
 };
 
 /// Selects datasets of one length.
@@ -34,8 +34,8 @@ struct Hdf5Choice {
 /// `arrays` are arrays_of(catalogue) and must outlive the choice.
 /// Errors: too_few_samples (no table), invalid_argument (no dataset of a requested name; tables of
 /// different length).
-[[nodiscard]] Result<Hdf5Choice> choose_datasets(const Hdf5Catalogue& catalogue,
-                                                 const std::vector<MatArray>& arrays,
-                                                 const ReadOptions& options);
+[[nodiscard]] Result<Choice> choose_datasets(const Catalogue& catalogue,
+                                             const std::vector<matlab::Array>& arrays,
+                                             const ReadOptions& options);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -5,7 +5,7 @@
 
 #include "proofmass/io/hdf5/storage.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
 bool is_number(hid_t type) {
@@ -18,7 +18,7 @@ std::size_t columns_of(hid_t type) {
   constexpr hsize_t most_columns = 4096;
   if (is_number(type)) return 1;
   if (H5Tget_class(type) != H5T_ARRAY || H5Tget_array_ndims(type) != 1) return 0;
-  const Hdf5Handle element(H5Tget_super(type), H5Tclose);
+  const Handle element(H5Tget_super(type), H5Tclose);
   hsize_t length = 0;
   if (!element || !is_number(element) || H5Tget_array_dims2(type, &length) < 0) return 0;
   return length <= most_columns ? static_cast<std::size_t>(length) : 0;
@@ -40,7 +40,7 @@ CompoundFields fields_of(hid_t type) {
     if (text == nullptr) continue;
     const std::string name = text;
     H5free_memory(text);
-    const Hdf5Handle member(H5Tget_member_type(type, i), H5Tclose);
+    const Handle member(H5Tget_member_type(type, i), H5Tclose);
     const std::size_t columns = member ? columns_of(member) : 0;
     if (columns > 0)
       fields.numeric.push_back({name, columns});
@@ -50,12 +50,12 @@ CompoundFields fields_of(hid_t type) {
   return fields;
 }
 
-Hdf5Handle memory_type_of(const CompoundFields& fields) {
-  Hdf5Handle type(H5Tcreate(H5T_COMPOUND, fields.columns() * sizeof(double)), H5Tclose);
+Handle memory_type_of(const CompoundFields& fields) {
+  Handle type(H5Tcreate(H5T_COMPOUND, fields.columns() * sizeof(double)), H5Tclose);
   std::size_t offset = 0;
   for (const NumericField& field : fields.numeric) {
     const hsize_t length = field.columns;
-    const Hdf5Handle row(H5Tarray_create2(H5T_NATIVE_DOUBLE, 1, &length), H5Tclose);
+    const Handle row(H5Tarray_create2(H5T_NATIVE_DOUBLE, 1, &length), H5Tclose);
     const std::size_t place = offset * sizeof(double);
     offset += field.columns;
     const bool is_row = field.columns > 1;
@@ -66,4 +66,4 @@ Hdf5Handle memory_type_of(const CompoundFields& fields) {
   return type;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

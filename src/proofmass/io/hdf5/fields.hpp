@@ -7,7 +7,7 @@
 
 #include "proofmass/io/hdf5/handle.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
 /// A field of a compound type that is a number, or an array of them.
 struct NumericField {
@@ -26,6 +26,6 @@ struct CompoundFields {
 [[nodiscard]] CompoundFields fields_of(hid_t type);
 
 /// The memory type of those fields: consecutive doubles.
-[[nodiscard]] Hdf5Handle memory_type_of(const CompoundFields& fields);
+[[nodiscard]] Handle memory_type_of(const CompoundFields& fields);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

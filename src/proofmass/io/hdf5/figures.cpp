@@ -6,7 +6,7 @@
 #include "proofmass/io/hdf5/handle.hpp"
 #include "proofmass/io/hdf5/library.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
 using Shape = std::vector<hsize_t>;
@@ -26,9 +26,9 @@ struct ChunkNeed {
 
 /// The chunks that contain a sample, doubled if some end before a block does.
 ChunkNeed need_of(hid_t dataset) {
-  const Hdf5Handle creation(H5Dget_create_plist(dataset), H5Pclose);
-  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
-  const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  const Handle space(H5Dget_space(dataset), H5Sclose);
+  const Handle type(H5Dget_type(dataset), H5Tclose);
   const Shape shape = shape_of(space);
   Shape chunk(shape.size());
   if (shape.empty() || H5Pget_layout(creation) != H5D_CHUNKED ||
@@ -51,18 +51,18 @@ ChunkNeed need_of(hid_t dataset) {
 /// read.
 class DatasetOpener {
  public:
-  Hdf5Handle open(hid_t file, const std::string& address) {
+  Handle open(hid_t file, const std::string& address) {
     constexpr std::size_t fewest_slots = 101;
     constexpr std::size_t most_slots = 100'003;
     ChunkNeed need;
     {
       // Closed before it is opened again: an open dataset keeps its cache.
-      const Hdf5Handle plain(H5Dopen2(file, address.c_str(), H5P_DEFAULT), H5Dclose);
+      const Handle plain(H5Dopen2(file, address.c_str(), H5P_DEFAULT), H5Dclose);
       if (plain) need = need_of(plain);
     }
     const std::size_t kept = need.bytes <= room_ ? need.bytes : 0;
     room_ -= kept;
-    const Hdf5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+    const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
     const std::size_t slots = need.chunks < most_slots / 10 ? 10 * need.chunks + 1 : most_slots;
     H5Pset_chunk_cache(access, std::max(slots, fewest_slots), kept, 1.0);
     return {H5Dopen2(file, address.c_str(), access), H5Dclose};
@@ -73,12 +73,12 @@ class DatasetOpener {
 };
 
 /// The memory type of the values.
-Hdf5Handle memory_type(hid_t stored, Hdf5Figures figures) {
-  if (figures == Hdf5Figures::int64) return {H5Tcopy(H5T_NATIVE_INT64), H5Tclose};
-  if (figures == Hdf5Figures::uint64) return {H5Tcopy(H5T_NATIVE_UINT64), H5Tclose};
+Handle memory_type(hid_t stored, Figures figures) {
+  if (figures == Figures::int64) return {H5Tcopy(H5T_NATIVE_INT64), H5Tclose};
+  if (figures == Figures::uint64) return {H5Tcopy(H5T_NATIVE_UINT64), H5Tclose};
   const std::string part = real_part(stored);
   if (!part.empty()) {
-    Hdf5Handle type(H5Tcreate(H5T_COMPOUND, sizeof(double)), H5Tclose);
+    Handle type(H5Tcreate(H5T_COMPOUND, sizeof(double)), H5Tclose);
     if (type) H5Tinsert(type, part.c_str(), 0, H5T_NATIVE_DOUBLE);
     return type;
   }
@@ -98,12 +98,12 @@ void turn(const std::vector<double>& from,
 
 class DatasetReader {
  public:
-  DatasetReader(DatasetOpener& opener, hid_t file, const Hdf5Request& request)
+  DatasetReader(DatasetOpener& opener, hid_t file, const Request& request)
       : request_(request),
         dataset_(opener.open(file, request.address)),
         space_(dataset_ ? H5Dget_space(dataset_) : -1, H5Sclose),
         stored_(dataset_ ? H5Dget_type(dataset_) : -1, H5Tclose),
-        type_(stored_ ? memory_type(stored_, request.figures) : Hdf5Handle(-1, H5Tclose)) {}
+        type_(stored_ ? memory_type(stored_, request.figures) : Handle(-1, H5Tclose)) {}
 
   /// True if the dataset still has the requested shape.
   [[nodiscard]] bool fits() const {
@@ -125,7 +125,7 @@ class DatasetReader {
     if (!read_rows(row, rows, block.data()))
       return Error{Errc::corrupt,
                    fmt::format("{}: sample {}: cannot be unpacked: the HDF5 library says \"{}\"",
-                               request_.name, row, hdf5_reason())};
+                               request_.name, row, failure_reason())};
     const bool is_turned = request_.is_by_row && request_.width > 1;
     if (is_turned) turn(block, rows, request_.width, turned);
     const auto& columns = is_turned ? turned : block;
@@ -143,29 +143,29 @@ class DatasetReader {
     start[time] = row;
     count[time] = rows;
     // With the rank of the file: if the two differ, the library processes values one by one.
-    const Hdf5Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
-                            H5Sclose);
+    const Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
+                        H5Sclose);
     return H5Sselect_hyperslab(space_, H5S_SELECT_SET, start.data(), nullptr, count.data(),
                                nullptr) >= 0 &&
            H5Dread(dataset_, type_, memory, space_, H5P_DEFAULT, into) >= 0;
   }
 
-  const Hdf5Request& request_;
-  Hdf5Handle dataset_, space_, stored_, type_;
+  const Request& request_;
+  Handle dataset_, space_, stored_, type_;
 };
 
 }  // namespace
 
-Status read_hdf5(const Hdf5Source& source,
-                 const std::vector<Hdf5Request>& requests,
-                 const ByteSink& sink) {
+Status read_values(const Source& source,
+                   const std::vector<Request>& requests,
+                   const ByteSink& sink) {
   const auto file = open_source(source);
   if (!file) return file.error();
   DatasetOpener opener;
   std::vector<DatasetReader> readers;
   readers.reserve(requests.size());
   std::uint64_t widest = 1;
-  for (const Hdf5Request& request : requests) {
+  for (const Request& request : requests) {
     readers.emplace_back(opener, *file, request);
     widest = std::max(widest, request.width);
     if (!readers.back().fits() || request.rows != requests.front().rows)
@@ -183,4 +183,4 @@ Status read_hdf5(const Hdf5Source& source,
   return Done{};
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
-std::string hdf5_reason() {
+std::string failure_reason() {
   std::string reason;
   const auto keep_first = [](unsigned, const H5E_error2_t* error, void* into) -> herr_t {
     if (error->desc == nullptr) return 0;
@@ -17,21 +17,21 @@ std::string hdf5_reason() {
   return reason.empty() ? "no reason given" : reason.substr(0, 300);
 }
 
-Result<Hdf5Handle> open_source(const Hdf5Source& source) {
+Result<Handle> open_source(const Source& source) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   H5PLset_loading_state(0);
-  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
 #if H5_VERSION_GE(1, 10, 7)
   H5Pset_file_locking(access, false, true);
 #endif
   // The default driver resolves the name of a link, which such a file does not have.
   constexpr std::size_t step = std::size_t{1} << 20;
   if (source.is_nameless) H5Pset_fapl_core(access, step, false);
-  Hdf5Handle file(H5Fopen(source.path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
+  Handle file(H5Fopen(source.path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (!file)
     return Error{
         Errc::corrupt,
-        fmt::format("is damaged or breaks off: the HDF5 library says \"{}\"", hdf5_reason())};
+        fmt::format("is damaged or breaks off: the HDF5 library says \"{}\"", failure_reason())};
   const struct rlimit no_file{0, 0};
   ::setrlimit(RLIMIT_NOFILE, &no_file);
   return file;
@@ -55,4 +55,4 @@ std::string real_part(hid_t type) {
   return {};
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

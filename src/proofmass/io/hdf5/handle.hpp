@@ -8,24 +8,23 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/io/hdf5/library.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
 /// An identifier of the HDF5 library, closed by its owner.
-class Hdf5Handle {
+class Handle {
  public:
   using Close = herr_t (*)(hid_t);
 
-  Hdf5Handle(hid_t id, Close closing) : id_(id), close_(closing) {}
-  Hdf5Handle(Hdf5Handle&& other) noexcept
-      : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Hdf5Handle(const Hdf5Handle&) = delete;
-  Hdf5Handle& operator=(const Hdf5Handle&) = delete;
-  Hdf5Handle& operator=(Hdf5Handle&& other) noexcept {
+  Handle(hid_t id, Close closing) : id_(id), close_(closing) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  Handle& operator=(Handle&& other) noexcept {
     std::swap(id_, other.id_);
     std::swap(close_, other.close_);
     return *this;
   }
-  ~Hdf5Handle() { close(); }
+  ~Handle() { close(); }
 
   /// False if pending data could not be written.
   bool close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
@@ -40,12 +39,12 @@ class Hdf5Handle {
 
 /// Opens a file for reading; afterwards this process can open no other, so that nothing in the file
 /// can refer to one. Errors: corrupt, with the library's reason.
-[[nodiscard]] Result<Hdf5Handle> open_source(const Hdf5Source& source);
+[[nodiscard]] Result<Handle> open_source(const Source& source);
 
 /// The library's message for the last failure.
-[[nodiscard]] std::string hdf5_reason();
+[[nodiscard]] std::string failure_reason();
 
 /// The name of the real part, if a type is a complex number: "real", "r".
 [[nodiscard]] std::string real_part(hid_t type);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

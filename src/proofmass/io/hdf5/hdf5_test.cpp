@@ -12,7 +12,7 @@
 #include "proofmass/io/hdf5/reader.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io::hdf5_test {
+namespace proofmass::io::hdf5::hdf5_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -20,7 +20,7 @@ using Names = std::vector<std::string>;
 class Hdf5 : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has_hdf5_library()) GTEST_SKIP() << "built without the HDF5 library";
+    if (!has_library()) GTEST_SKIP() << "built without the HDF5 library";
   }
 };
 class Mat73 : public Hdf5 {};
@@ -296,15 +296,15 @@ TEST_F(Mat73, LooksIntoCellsAndArraysOfStructs) {
 TEST(Hdf5Signature, IsKnownWithAndWithoutABlockOfTheUser) {
   using namespace std::literals;
   const std::string signature = "\x89HDF\r\n\x1A\n"s;
-  EXPECT_TRUE(claims_hdf5(signature, ""));
-  EXPECT_TRUE(claims_hdf5(std::string(1024, ' ') + signature, ""));
-  EXPECT_TRUE(claims_hdf5("MATLAB 7.3 MAT-file", ""));
-  EXPECT_FALSE(claims_hdf5("MATLAB 5.0 MAT-file", ""));
-  EXPECT_FALSE(claims_hdf5(std::string(700, ' ') + signature, ""));
+  EXPECT_TRUE(claims(signature, ""));
+  EXPECT_TRUE(claims(std::string(1024, ' ') + signature, ""));
+  EXPECT_TRUE(claims("MATLAB 7.3 MAT-file", ""));
+  EXPECT_FALSE(claims("MATLAB 5.0 MAT-file", ""));
+  EXPECT_FALSE(claims(std::string(700, ' ') + signature, ""));
   const auto bare = read_text(signature);
   ASSERT_FALSE(bare);
-  EXPECT_EQ(bare.error().code, has_hdf5_library() ? Errc::corrupt : Errc::unsupported);
+  EXPECT_EQ(bare.error().code, has_library() ? Errc::corrupt : Errc::unsupported);
 }
 
 }  // namespace
-}  // namespace proofmass::io::hdf5_test
+}  // namespace proofmass::io::hdf5::hdf5_test

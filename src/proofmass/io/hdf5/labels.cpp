@@ -11,7 +11,7 @@
 #include "proofmass/io/names.hpp"
 #include "proofmass/io/text/unit_in_text.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
 bool is_unit_name(std::string_view name) {
@@ -43,7 +43,7 @@ std::vector<std::string> split(std::string_view text) {
 }
 
 /// The texts of an attribute, one per column or one for all; empty if it is neither.
-std::vector<std::string> for_columns(const Hdf5Attribute& attribute, std::size_t width) {
+std::vector<std::string> for_columns(const Attribute& attribute, std::size_t width) {
   std::vector<std::string> texts = attribute.texts;
   if (texts.size() == 1 && width > 1 && split(texts[0]).size() == width) texts = split(texts[0]);
   if (texts.size() == 1) texts.resize(width, texts[0]);
@@ -51,7 +51,7 @@ std::vector<std::string> for_columns(const Hdf5Attribute& attribute, std::size_t
 }
 
 /// Names listed in an attribute; an axis alone is prefixed with the dataset's name.
-std::vector<std::string> listed_names(const Hdf5Attribute& columns,
+std::vector<std::string> listed_names(const Attribute& columns,
                                       std::size_t width,
                                       const std::string& stem) {
   std::vector<std::string> names = for_columns(columns, width);
@@ -71,29 +71,30 @@ bool is_quaternion_name(std::string_view name) {
 /// Headings of one file's tables.
 class Labeller {
  public:
-  Labeller(const Hdf5Catalogue& catalogue, const std::vector<MatTable>& tables)
+  Labeller(const Catalogue& catalogue, const std::vector<matlab::Table>& tables)
       : catalogue_(catalogue) {
     stems_.reserve(tables.size());
-    for (const MatTable& table : tables) stems_.push_back(std::string(leaf_of(table.array->path)));
+    for (const matlab::Table& table : tables)
+      stems_.push_back(std::string(leaf_of(table.array->path)));
     // Twice: names made unique by their group may need the next group.
     for (int round = 0; round < 2; ++round) lengthen(tables);
   }
 
   /// `has_time`: the first column is the time, in seconds.
-  std::vector<std::string> headings(const MatTable& table,
+  std::vector<std::string> headings(const matlab::Table& table,
                                     std::size_t number,
                                     bool has_time,
                                     std::vector<Note>& notes) const {
     const std::string& path = table.array->path;
     auto [stem, name_unit] = read_label(stems_[number]);
-    const Hdf5Attribute* exact = table.width == 1 ? find(path, is_exact_name) : nullptr;
+    const Attribute* exact = table.width == 1 ? find(path, is_exact_name) : nullptr;
     if (exact != nullptr) {
       stem = exact->texts[0];
       name_unit = {};
     }
     const std::vector<std::string> names = column_names(table, stem, has_time);
     std::vector<std::string> units(table.width, std::string(name_unit.symbol));
-    const Hdf5Attribute* unit = find(path, is_unit_name);
+    const Attribute* unit = find(path, is_unit_name);
     const auto given =
         unit != nullptr ? for_columns(*unit, table.width) : std::vector<std::string>{};
     std::string unread;
@@ -114,14 +115,14 @@ class Labeller {
     return headings;
   }
 
-  [[nodiscard]] bool has_columns(const MatTable& table) const {
-    const Hdf5Attribute* columns = find(table.array->path, is_columns_name);
+  [[nodiscard]] bool has_columns(const matlab::Table& table) const {
+    const Attribute* columns = find(table.array->path, is_columns_name);
     return columns != nullptr && table.width > 1 &&
            for_columns(*columns, table.width).size() == table.width;
   }
 
  private:
-  const Hdf5Attribute* find(std::string_view owner, bool (*matches)(std::string_view)) const {
+  const Attribute* find(std::string_view owner, bool (*matches)(std::string_view)) const {
     const auto found = std::ranges::find_if(catalogue_.attributes, [&](const auto& attribute) {
       return attribute.owner == owner && matches(attribute.name) && !attribute.texts.empty();
     });
@@ -129,7 +130,7 @@ class Labeller {
   }
 
   /// Prefixes the group to uninformative and duplicate names.
-  void lengthen(const std::vector<MatTable>& tables) {
+  void lengthen(const std::vector<matlab::Table>& tables) {
     constexpr std::array<std::string_view, 12> idle{
         "x",     "y",     "z", "w", "data", "values", "value", "samples", "array", "block0values",
         "table", "signal"};
@@ -143,7 +144,7 @@ class Labeller {
     }
   }
 
-  std::vector<std::string> column_names(const MatTable& table,
+  std::vector<std::string> column_names(const matlab::Table& table,
                                         const std::string& stem,
                                         bool has_time) const {
     if (table.width == 1) return {stem};
@@ -160,7 +161,7 @@ class Labeller {
                         std::vector<std::string>& units,
                         std::vector<Note>& notes) const {
     for (std::string_view owner = path;; owner = group_of(owner)) {
-      for (const Hdf5Attribute& attribute : catalogue_.attributes) {
+      for (const Attribute& attribute : catalogue_.attributes) {
         if (attribute.owner != owner) continue;
         for (const std::string& text : attribute.texts) {
           const std::string symbol = unit_in_text(text, leaf_of(path));
@@ -177,7 +178,7 @@ class Labeller {
     }
   }
 
-  const Hdf5Catalogue& catalogue_;
+  const Catalogue& catalogue_;
   std::vector<std::string> stems_;
 };
 
@@ -196,11 +197,11 @@ std::vector<std::string> names_by_place(const std::string& stem, std::size_t wid
   return names;
 }
 
-std::vector<std::string> hdf5_headings(const Hdf5Catalogue& catalogue,
-                                       const std::vector<MatTable>& tables,
-                                       const std::vector<std::vector<std::vector<double>>>& values,
-                                       bool is_timed,
-                                       std::vector<Note>& notes) {
+std::vector<std::string> headings_of(const Catalogue& catalogue,
+                                     const std::vector<matlab::Table>& tables,
+                                     const std::vector<std::vector<std::vector<double>>>& values,
+                                     bool is_timed,
+                                     std::vector<Note>& notes) {
   const Labeller labeller(catalogue, tables);
   std::vector<std::string> headings;
   for (std::size_t i = 0; i < tables.size(); ++i) {
@@ -214,13 +215,13 @@ std::vector<std::string> hdf5_headings(const Hdf5Catalogue& catalogue,
   return headings;
 }
 
-std::optional<std::int64_t> hdf5_start_ns(const Hdf5Catalogue& catalogue, std::string_view path) {
+std::optional<std::int64_t> start_ns_of(const Catalogue& catalogue, std::string_view path) {
   for (;; path = group_of(path)) {
-    for (const Hdf5Attribute& attribute : catalogue.attributes)
+    for (const Attribute& attribute : catalogue.attributes)
       if (attribute.owner == path && attribute.name == "start_time_ns" && attribute.integer)
         return attribute.integer;
     if (path.empty()) return std::nullopt;
   }
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -11,7 +11,7 @@
 #include "proofmass/io/matlab/mat_choice.hpp"
 
 // Metadata of an HDF5 file: names, attributes and texts.
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
 /// Headings with units for all columns of the tables, `values` being their columns.
 ///
@@ -23,9 +23,9 @@ namespace proofmass::io {
 ///   in the file ("`acc` in m/s²"), with a note.
 /// - The first column is the time if it increases, unless there are three, or is_timed is set
 ///   because the file gives the time or the rate otherwise.
-[[nodiscard]] std::vector<std::string> hdf5_headings(
-    const Hdf5Catalogue& catalogue,
-    const std::vector<MatTable>& tables,
+[[nodiscard]] std::vector<std::string> headings_of(
+    const Catalogue& catalogue,
+    const std::vector<matlab::Table>& tables,
     const std::vector<std::vector<std::vector<double>>>& values,
     bool is_timed,
     std::vector<Note>& notes);
@@ -35,19 +35,19 @@ namespace proofmass::io {
 
 /// The time of the first sample in nanoseconds, from an attribute `start_time_ns` of a dataset or
 /// the nearest group around it.
-[[nodiscard]] std::optional<std::int64_t> hdf5_start_ns(const Hdf5Catalogue& catalogue,
-                                                        std::string_view path);
+[[nodiscard]] std::optional<std::int64_t> start_ns_of(const Catalogue& catalogue,
+                                                      std::string_view path);
 
 /// The rate from an attribute or a scalar of such a name (`fs`, `sampling_rate`; `dt` in seconds),
 /// of the first table, or the nearest group around it.
-[[nodiscard]] std::optional<double> hdf5_rate_hz(const Hdf5Catalogue& catalogue,
-                                                 const std::vector<MatTable>& tables,
-                                                 std::vector<Note>& notes);
+[[nodiscard]] std::optional<double> rate_hz_of(const Catalogue& catalogue,
+                                               const std::vector<matlab::Table>& tables,
+                                               std::vector<Note>& notes);
 
 /// Notes on further metadata for the user: texts about the whole file, scale factors that were not
 /// applied.
-void note_texts(const Hdf5Catalogue& catalogue,
-                const std::vector<MatTable>& tables,
+void note_texts(const Catalogue& catalogue,
+                const std::vector<matlab::Table>& tables,
                 std::vector<Note>& notes);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -13,7 +13,7 @@
 #include "proofmass/io/hdf5/runs.hpp"
 #include "proofmass/io/hdf5/storage.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
 constexpr int deepest = 16;
@@ -46,7 +46,7 @@ class Lister {
     if (kind == H5I_DATASET) visit_dataset(object, place);
   }
 
-  [[nodiscard]] Hdf5Catalogue take() { return std::move(catalogue_); }
+  [[nodiscard]] Catalogue take() { return std::move(catalogue_); }
 
  private:
   struct Members {
@@ -59,7 +59,7 @@ class Lister {
   /// Called by the library, which exceptions must not cross.
   static herr_t collect(hid_t, const char* name, const H5L_info_t* link, void* into) noexcept {
     Members& members = *static_cast<Members*>(into);
-    if (++members.lister->objects_ > most_hdf5_objects) {
+    if (++members.lister->objects_ > most_objects) {
       members.lister->catalogue_.is_cut = true;
       return 1;
     }
@@ -89,7 +89,7 @@ class Lister {
 
   /// In the order of creation, if the group stores it; else by name.
   static H5_index_t order_of(hid_t group) {
-    const Hdf5Handle creation(H5Gget_create_plist(group), H5Pclose);
+    const Handle creation(H5Gget_create_plist(group), H5Pclose);
     unsigned kept = 0;
     const bool is_kept = creation && H5Pget_link_creation_order(creation, &kept) >= 0 &&
                          (kept & H5P_CRT_ORDER_INDEXED) != 0;
@@ -98,7 +98,7 @@ class Lister {
 
   void visit(hid_t group, const std::string& name, const Place& parent) {
     if (is_matlab_ && parent.path.empty() && name.starts_with('#')) return;
-    const Hdf5Handle object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose);
+    const Handle object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose);
     const Place place = member(parent, name, is_matlab_);
     if (!object)
       skip(place, "damaged");
@@ -107,8 +107,8 @@ class Lister {
   }
 
   void visit_dataset(hid_t dataset, const Place& place) {
-    const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
-    const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+    const Handle type(H5Dget_type(dataset), H5Tclose);
+    const Handle space(H5Dget_space(dataset), H5Sclose);
     if (!type || !space) return skip(place, "damaged");
     if (!is_matlab_ && holds_runs(dataset)) {
       if (!read_runs(dataset, catalogue_)) skip(place, "labels that cannot be read");
@@ -126,7 +126,7 @@ class Lister {
     if (refusal.empty() && stored.empty()) refusal = kind_of(type);
     if (refusal.empty()) refusal = storage_refusal(dataset);
     if (!refusal.empty()) return skip(place, refusal);
-    Hdf5Dataset found{.path = place.path, .address = place.address, .type = stored};
+    Dataset found{.path = place.path, .address = place.address, .type = stored};
     if (!class_name.empty()) found.type = class_name;
     found.group_length = place.group_length;
     found.is_complex = stored == "complex";
@@ -143,27 +143,27 @@ class Lister {
   }
 
   /// Makes columns of the fields of a compound type, and names them; false if it is not a table.
-  bool keep_fields(const CompoundFields& fields, const Place& place, Hdf5Dataset& found) {
+  bool keep_fields(const CompoundFields& fields, const Place& place, Dataset& found) {
     for (const std::string& other : fields.others) skip(place.path + '/' + other);
-    if (found.shape.size() != 1 || fields.columns() > most_mat_channels) {
+    if (found.shape.size() != 1 || fields.columns() > matlab::most_channels) {
       skip(place, found.shape.size() != 1 ? "compound, of several dimensions"
                                           : "compound, of more than 64 columns");
       return false;
     }
     found.is_compound = true;
     found.shape.push_back(fields.columns());
-    Hdf5Attribute columns{.owner = place.path, .name = "columns"};
+    Attribute columns{.owner = place.path, .name = "columns"};
     for (const NumericField& field : fields.numeric)
       std::ranges::move(names_by_place(field.name, field.columns),
                         std::back_inserter(columns.texts));
-    if (catalogue_.attributes.size() < most_hdf5_objects)
+    if (catalogue_.attributes.size() < most_objects)
       catalogue_.attributes.push_back(std::move(columns));
     return true;
   }
 
   /// The reason why a dataset is not numeric despite its storage type; empty if it is.
   static std::string meaning_refusal(hid_t dataset, const std::string& class_name) {
-    const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+    const Handle space(H5Dget_space(dataset), H5Sclose);
     if (H5Sget_simple_extent_type(space) == H5S_NULL || has_attribute(dataset, "MATLAB_empty"))
       return "empty";
     if (class_name == "char") return "text";
@@ -184,22 +184,22 @@ class Lister {
 
   /// Cells, "parts{2}", and the fields of an array of structs, "runs(2).acc", are references.
   void visit_references(hid_t dataset, bool is_cell, const Place& place) {
-    const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
-    const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
+    const Handle space(H5Dget_space(dataset), H5Sclose);
+    const Handle type(H5Dget_type(dataset), H5Tclose);
     const hssize_t count = H5Sget_simple_extent_npoints(space);
-    if (count < 0 || static_cast<std::size_t>(count) > most_hdf5_objects ||
+    if (count < 0 || static_cast<std::size_t>(count) > most_objects ||
         H5Tequal(type, H5T_STD_REF_OBJ) <= 0 || place.depth > deepest)
       return skip(place, "references");
     std::vector<hobj_ref_t> references(static_cast<std::size_t>(count));
     if (H5Dread(dataset, H5T_STD_REF_OBJ, H5S_ALL, H5S_ALL, H5P_DEFAULT, references.data()) < 0)
       return skip(place, "damaged");
     for (std::size_t i = 0; i < references.size(); ++i) {
-      if (++objects_ > most_hdf5_objects) {
+      if (++objects_ > most_objects) {
         catalogue_.is_cut = true;
         return;
       }
-      const Hdf5Handle object(H5Rdereference2(dataset, H5P_DEFAULT, H5R_OBJECT, &references[i]),
-                              H5Oclose);
+      const Handle object(H5Rdereference2(dataset, H5P_DEFAULT, H5R_OBJECT, &references[i]),
+                          H5Oclose);
       Place target = referred(place, i + 1, is_cell);
       std::array<char, 1024> address{};
       if (!object ||
@@ -229,8 +229,8 @@ class Lister {
   }
 
   void keep_attributes(hid_t object, const std::string& owner) {
-    for (Hdf5Attribute& attribute : attributes_of(object)) {
-      if (catalogue_.attributes.size() >= most_hdf5_objects) return;
+    for (Attribute& attribute : attributes_of(object)) {
+      if (catalogue_.attributes.size() >= most_objects) return;
       attribute.owner = owner;
       catalogue_.attributes.push_back(std::move(attribute));
     }
@@ -240,32 +240,31 @@ class Lister {
     skip(fmt::format("{} ({})", place.path, why));
   }
   void skip(std::string what) {
-    if (catalogue_.skipped.size() < most_hdf5_objects)
-      catalogue_.skipped.push_back(std::move(what));
+    if (catalogue_.skipped.size() < most_objects) catalogue_.skipped.push_back(std::move(what));
   }
 
   bool is_matlab_;
-  Hdf5Catalogue catalogue_;
+  Catalogue catalogue_;
   std::set<haddr_t> visited_;
   std::size_t objects_ = 0;
 };
 
 }  // namespace
 
-bool has_hdf5_library() {
+bool has_library() {
   return true;
 }
 
-Result<Hdf5Catalogue> list_hdf5(const Hdf5Source& source, bool is_matlab) {
+Result<Catalogue> list_datasets(const Source& source, bool is_matlab) {
   const auto file = open_source(source);
   if (!file) return file.error();
-  const Hdf5Handle root(H5Gopen2(*file, "/", H5P_DEFAULT), H5Gclose);
+  const Handle root(H5Gopen2(*file, "/", H5P_DEFAULT), H5Gclose);
   if (!root)
     return Error{Errc::corrupt,
-                 fmt::format("is damaged: the HDF5 library says \"{}\"", hdf5_reason())};
+                 fmt::format("is damaged: the HDF5 library says \"{}\"", failure_reason())};
   Lister lister(is_matlab);
   lister.visit_object(root, {});
   return lister.take();
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
 /// The group of an object: "imu" of "imu/acc"; empty for the file itself.
 [[nodiscard]] inline std::string_view group_of(std::string_view path) {
@@ -20,4 +20,4 @@ namespace proofmass::io {
   return group.empty() || path == group || (path.starts_with(group) && path[group.size()] == '/');
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

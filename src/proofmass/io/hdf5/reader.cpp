@@ -12,12 +12,12 @@
 #include "proofmass/io/reading/labelled_reader.hpp"
 #include "proofmass/io/reading/recording_reader.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
-class Hdf5Tables final : public TableFile {
+class Tables final : public TableFile {
  public:
-  Hdf5Tables(OpenHdf5 file, std::unique_ptr<TableReader> first)
+  Tables(OpenFile file, std::unique_ptr<TableReader> first)
       : file_(std::move(file)), first_(std::move(first)) {
     const TableHead& head = first_->head();
     summary_[0] = {
@@ -28,7 +28,7 @@ class Hdf5Tables final : public TableFile {
   [[nodiscard]] Result<std::unique_ptr<RecordingReader>> open(std::size_t,
                                                               const ReadOptions& options) override {
     if (!first_) {
-      auto table = open_hdf5_table(file_, options);
+      auto table = open_table(file_, options);
       if (!table) return table.error();
       first_ = std::move(table).value();
     }
@@ -39,7 +39,7 @@ class Hdf5Tables final : public TableFile {
   }
 
  private:
-  OpenHdf5 file_;
+  OpenFile file_;
   std::unique_ptr<TableReader> first_;  ///< until it is requested
   std::array<TableSummary, 1> summary_;
 };
@@ -50,7 +50,7 @@ bool is_matlab(std::string_view head) {
 
 }  // namespace
 
-bool claims_hdf5(std::string_view head, std::string_view) {
+bool claims(std::string_view head, std::string_view) {
   using namespace std::literals;
   constexpr std::array<std::size_t, 4> places{0, 512, 1024, 2048};
   return is_matlab(head) || std::ranges::any_of(places, [&](std::size_t place) {
@@ -58,12 +58,12 @@ bool claims_hdf5(std::string_view head, std::string_view) {
          });
 }
 
-Result<std::unique_ptr<TableFile>> open_hdf5(std::unique_ptr<PeekSource> source,
-                                             const ReadOptions& options) {
+Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
+                                        const ReadOptions& options) {
   const auto head = source->peek(16);
   if (!head) return head.error();
   const bool matlab = is_matlab(*head);
-  if (!has_hdf5_library())
+  if (!has_library())
     return Error{Errc::unsupported,
                  matlab ? "is a MAT file of version 7.3, and this program was built without the "
                           "HDF5 library: use save(…, '-v7') in MATLAB"
@@ -71,16 +71,16 @@ Result<std::unique_ptr<TableFile>> open_hdf5(std::unique_ptr<PeekSource> source,
                           "the dataset as CSV"};
   auto spooled = library_file_of(*source, options.progress);
   if (!spooled) return spooled.error();
-  OpenHdf5 file{.file = std::move(spooled).value(), .is_matlab = matlab};
+  OpenFile file{.file = std::move(spooled).value(), .is_matlab = matlab};
   auto catalogue = list_in_child(file.file, matlab);
   if (!catalogue) return catalogue.error();
   file.catalogue = std::move(catalogue).value();
   file.arrays = arrays_of(file.catalogue);
   file.notes = source->notes();
-  auto first = open_hdf5_table(file, options);
+  auto first = open_table(file, options);
   if (!first) return first.error();
   return std::unique_ptr<TableFile>(
-      std::make_unique<Hdf5Tables>(std::move(file), std::move(first).value()));
+      std::make_unique<Tables>(std::move(file), std::move(first).value()));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -7,11 +7,11 @@
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/io/table_file.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
 /// True if a file is HDF5, with or without a user block, by its first bytes; MATLAB's version 7.3
 /// is.
-[[nodiscard]] bool claims_hdf5(std::string_view head, std::string_view file_name);
+[[nodiscard]] bool claims(std::string_view head, std::string_view file_name);
 
 /// Opens HDF5.
 ///
@@ -27,7 +27,7 @@ namespace proofmass::io {
 /// Errors: corrupt, unsupported (built without the library; more values than the file can hold),
 /// too_few_samples, invalid_argument, unreadable.
 /// Cost: some MiB; compressed data, or data that are not in a file, are held in memory in addition.
-[[nodiscard]] Result<std::unique_ptr<TableFile>> open_hdf5(std::unique_ptr<PeekSource> source,
-                                                           const ReadOptions& options);
+[[nodiscard]] Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
+                                                      const ReadOptions& options);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

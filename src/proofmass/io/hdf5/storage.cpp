@@ -6,7 +6,7 @@
 
 #include "proofmass/io/hdf5/handle.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
 std::string chunk_refusal(hid_t creation) {
@@ -73,7 +73,7 @@ std::string_view kind_of(hid_t type) {
 }
 
 std::string storage_refusal(hid_t dataset) {
-  const Hdf5Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
   if (!creation) return "damaged";
   if (H5Pget_external_count(creation) != 0) return "in another file";
   const H5D_layout_t layout = H5Pget_layout(creation);
@@ -85,4 +85,4 @@ std::string storage_refusal(hid_t dataset) {
   return refusal;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
 /// "float64", "int16", "bool"; empty if not a number.
 [[nodiscard]] std::string type_name(hid_t type);
@@ -16,4 +16,4 @@ namespace proofmass::io {
 /// filter that is not built in; empty if it can.
 [[nodiscard]] std::string storage_refusal(hid_t dataset);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

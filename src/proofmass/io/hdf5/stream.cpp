@@ -9,10 +9,10 @@
 
 #include "proofmass/core/contract.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
-Hdf5Source source_of(const LibraryFile& file) {
+Source source_of(const LibraryFile& file) {
   return {file.path(), file.is_nameless()};
 }
 
@@ -28,12 +28,12 @@ ChildLimits limits_for(const LibraryFile& file, std::uint64_t bytes) {
 
 /// Values take space in the file, at least a thousandth if compressed; more than 4 GiB of doubles
 /// are never compressed that well.
-Status check_room(std::span<const Hdf5Request> requests, std::uint64_t file_bytes) {
+Status check_room(std::span<const Request> requests, std::uint64_t file_bytes) {
   constexpr std::uint64_t most_packed = 1040;  // deflate's limit is 1032
   constexpr std::uint64_t usual_packed = 64;
   constexpr std::uint64_t few = std::uint64_t{1} << 29;
   std::uint64_t figures = 0;
-  for (const Hdf5Request& request : requests) figures += request.rows * request.width;
+  for (const Request& request : requests) figures += request.rows * request.width;
   const std::uint64_t room =
       std::max(std::min(file_bytes * most_packed, few), file_bytes * usual_packed);
   if (figures <= room) return Done{};
@@ -49,10 +49,10 @@ Error broken() {
 
 }  // namespace
 
-Result<Hdf5Catalogue> list_in_child(const LibraryFile& file, bool is_matlab) {
+Result<Catalogue> list_in_child(const LibraryFile& file, bool is_matlab) {
   std::string bytes;
   const auto work = [&](const ByteSink& sink) -> Status {
-    const auto catalogue = list_hdf5(source_of(file), is_matlab);
+    const auto catalogue = list_datasets(source_of(file), is_matlab);
     if (!catalogue) return catalogue.error();
     const std::string encoded = encode(*catalogue);
     if (encoded.size() > most_catalogue_bytes)
@@ -70,25 +70,24 @@ Result<Hdf5Catalogue> list_in_child(const LibraryFile& file, bool is_matlab) {
   return decode(bytes);
 }
 
-FigureStream::FigureStream(std::vector<Hdf5Request> requests, BytePump said)
+FigureStream::FigureStream(std::vector<Request> requests, BytePump said)
     : requests_(std::move(requests)),
       message_(std::in_place, std::move(said)),
       block_(requests_.size()),
       origins_(requests_.size(), 0) {}
 
-FigureStream::FigureStream(std::vector<Hdf5Request> requests, Subprocess child)
+FigureStream::FigureStream(std::vector<Request> requests, Subprocess child)
     : requests_(std::move(requests)),
       child_(std::move(child)),
       block_(requests_.size()),
       origins_(requests_.size(), 0) {}
 
-Result<FigureStream> FigureStream::start(const LibraryFile& file,
-                                         std::vector<Hdf5Request> requests) {
+Result<FigureStream> FigureStream::start(const LibraryFile& file, std::vector<Request> requests) {
   if (const Status fits = check_room(requests, file.size()); !fits) return fits.error();
   std::uint64_t bytes = file.size();
-  for (const Hdf5Request& request : requests) bytes += request.rows * request.width * 8;
+  for (const Request& request : requests) bytes += request.rows * request.width * 8;
   const auto work = [&](const ByteSink& sink) {
-    return read_hdf5(source_of(file), requests, sink);
+    return read_values(source_of(file), requests, sink);
   };
   auto child = Subprocess::start(work, limits_for(file, bytes));
   if (!child) return child.error();
@@ -127,24 +126,23 @@ void FigureStream::copy(std::size_t request,
                         std::span<double> into) const {
   PM_EXPECTS(row + into.size() <= rows_);
   const auto from = std::span(block_[request]).subspan(column * rows_ + row, into.size());
-  const Hdf5Figures figures = requests_[request].figures;
-  if (figures == Hdf5Figures::doubles) {
+  const Figures figures = requests_[request].figures;
+  if (figures == Figures::doubles) {
     std::memcpy(into.data(), from.data(), from.size_bytes());
     return;
   }
   const Int128 origin = origins_[request];
   for (std::size_t i = 0; i < from.size(); ++i) {
-    const Int128 value = figures == Hdf5Figures::int64
-                             ? Int128{std::bit_cast<std::int64_t>(from[i])}
-                             : Int128{from[i]};
+    const Int128 value =
+        figures == Figures::int64 ? Int128{std::bit_cast<std::int64_t>(from[i])} : Int128{from[i]};
     into[i] = static_cast<double>(value - origin);
   }
 }
 
 Int128 FigureStream::put_origin_at_first(std::size_t request) {
-  PM_EXPECTS(rows_ > 0 && requests_[request].figures != Hdf5Figures::doubles);
+  PM_EXPECTS(rows_ > 0 && requests_[request].figures != Figures::doubles);
   const std::uint64_t first = block_[request].front();
-  origins_[request] = requests_[request].figures == Hdf5Figures::int64
+  origins_[request] = requests_[request].figures == Figures::int64
                           ? Int128{std::bit_cast<std::int64_t>(first)}
                           : Int128{first};
   return origins_[request];
@@ -155,4 +153,4 @@ double FigureStream::fraction_read() const {
   return all == 0 ? 1.0 : static_cast<double>(rows_taken_) / static_cast<double>(all);
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

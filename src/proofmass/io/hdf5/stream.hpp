@@ -13,21 +13,21 @@
 #include "proofmass/io/hdf5/library.hpp"
 #include "proofmass/io/stamp_reader.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
-/// list_hdf5() in a child process. Errors: as there; corrupt, unsupported (too many names).
-[[nodiscard]] Result<Hdf5Catalogue> list_in_child(const LibraryFile& file, bool is_matlab);
+/// list_datasets() in a child process. Errors: as there; corrupt, unsupported (too many names).
+[[nodiscard]] Result<Catalogue> list_in_child(const LibraryFile& file, bool is_matlab);
 
 /// Datasets read in parallel by a child process, one block of rows at a time.
 class FigureStream {
  public:
   /// Errors: unsupported (more values than the file can hold), unreadable.
   [[nodiscard]] static Result<FigureStream> start(const LibraryFile& file,
-                                                  std::vector<Hdf5Request> requests);
+                                                  std::vector<Request> requests);
   /// For tests: a stream of bytes instead of a child process.
-  FigureStream(std::vector<Hdf5Request> requests, BytePump said);
+  FigureStream(std::vector<Request> requests, BytePump said);
 
-  [[nodiscard]] std::span<const Hdf5Request> requests() const { return requests_; }
+  [[nodiscard]] std::span<const Request> requests() const { return requests_; }
   /// Replaces the current block by the next: number of rows, 0 at the end.
   /// Errors: corrupt (naming dataset and sample, or how the process ended).
   [[nodiscard]] Result<std::size_t> next();
@@ -39,12 +39,12 @@ class FigureStream {
   [[nodiscard]] double fraction_read() const;
 
  private:
-  FigureStream(std::vector<Hdf5Request> requests, Subprocess child);
+  FigureStream(std::vector<Request> requests, Subprocess child);
 
   [[nodiscard]] Result<std::span<const char>> hear();
   Status take(std::size_t request, std::uint64_t rows);
 
-  std::vector<Hdf5Request> requests_;
+  std::vector<Request> requests_;
   std::optional<Subprocess> child_;
   std::optional<MessageReader> message_;
   std::vector<std::vector<std::uint64_t>> block_;  ///< bits of the values, one vector per request
@@ -53,4 +53,4 @@ class FigureStream {
   std::uint64_t rows_taken_ = 0;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -7,7 +7,7 @@
 
 #include "proofmass/io/bytes/subprocess_frames.hpp"
 
-namespace proofmass::io::hdf5_stream_test {
+namespace proofmass::io::hdf5::stream_test {
 namespace {
 
 std::string frame(FrameKind kind, std::string_view bytes = {}) {
@@ -24,9 +24,8 @@ std::string data(const std::vector<T>& figures) {
 }
 
 FigureStream stream_of(std::string said) {
-  std::vector<Hdf5Request> requests{
-      {.name = "a", .rows = 2, .width = 2},
-      {.name = "t", .rows = 2, .width = 1, .figures = Hdf5Figures::int64}};
+  std::vector<Request> requests{{.name = "a", .rows = 2, .width = 2},
+                                {.name = "t", .rows = 2, .width = 1, .figures = Figures::int64}};
   return {std::move(requests),
           [said = std::move(said),
            at = std::size_t{0}](std::span<char> into) mutable -> Result<std::size_t> {
@@ -73,4 +72,4 @@ TEST(FigureStream, RefusesWhatBreaksOffOrHasAnotherSize) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::hdf5_stream_test
+}  // namespace proofmass::io::hdf5::stream_test

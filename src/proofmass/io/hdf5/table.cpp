@@ -14,7 +14,7 @@
 #include "proofmass/io/hdf5/stream.hpp"
 #include "proofmass/io/matlab/mat_headings.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
 /// Source of a column of the table.
@@ -23,9 +23,9 @@ struct Destination {
   std::size_t column = 0;
 };
 
-class Hdf5TableReader final : public TableReader {
+class DatasetReader final : public TableReader {
  public:
-  Hdf5TableReader(FigureStream stream, TableHead head, std::vector<Destination> places)
+  DatasetReader(FigureStream stream, TableHead head, std::vector<Destination> places)
       : stream_(std::move(stream)), head_(std::move(head)), places_(std::move(places)) {}
 
   [[nodiscard]] const TableHead& head() const override { return head_; }
@@ -59,43 +59,43 @@ class Hdf5TableReader final : public TableReader {
 
 /// The datasets to be read, and what is known of them before the first value.
 struct Plan {
-  std::vector<MatTable> tables;
+  std::vector<matlab::Table> tables;
   TableHead head;
 };
 
-Result<Plan> plan_plain(const OpenHdf5& file, const ReadOptions& options) {
+Result<Plan> plan_plain(const OpenFile& file, const ReadOptions& options) {
   const auto choice = choose_datasets(file.catalogue, file.arrays, options);
   if (!choice) return choice.error();
   Plan plan{choice->tables, {}};
   plan.head.format = "HDF5";
   plan.head.notes = choice->notes;
   std::ranges::copy(file.notes, std::back_inserter(plan.head.notes));
-  plan.head.rate_hz = hdf5_rate_hz(file.catalogue, plan.tables, plan.head.notes);
+  plan.head.rate_hz = rate_hz_of(file.catalogue, plan.tables, plan.head.notes);
   if (plan.head.rate_hz)
-    plan.head.start_ns = hdf5_start_ns(file.catalogue, plan.tables.front().array->path);
+    plan.head.start_ns = start_ns_of(file.catalogue, plan.tables.front().array->path);
   return plan;
 }
 
 /// A variable of MATLAB is selected and named as in the older versions of its files.
-Result<Plan> plan_matlab(const OpenHdf5& file, const ReadOptions& options) {
-  MatCatalogue variables;
+Result<Plan> plan_matlab(const OpenFile& file, const ReadOptions& options) {
+  matlab::Catalogue variables;
   variables.version = "MAT v7.3";
   variables.arrays = file.arrays;
   variables.skipped = file.catalogue.skipped;
   variables.is_cut = file.catalogue.is_cut;
-  const auto choice = choose_tables(variables, options);
+  const auto choice = matlab::choose_tables(variables, options);
   if (!choice) return choice.error();
-  const auto number_of = [&](const MatArray* array) {
+  const auto number_of = [&](const matlab::Array* array) {
     return static_cast<std::size_t>(array - variables.arrays.data());
   };
   Plan plan{choice->tables, {}};
-  for (MatTable& table : plan.tables) table.array = &file.arrays[number_of(table.array)];
+  for (matlab::Table& table : plan.tables) table.array = &file.arrays[number_of(table.array)];
   plan.head.format = "MAT v7.3";
   plan.head.notes = choice->notes;
   std::ranges::copy(file.notes, std::back_inserter(plan.head.notes));
   if (choice->rate == nullptr) return plan;
   const auto figure = file.catalogue.datasets[number_of(choice->rate)].figure;
-  const bool can_be = figure && is_rate(*figure);
+  const bool can_be = figure && matlab::is_rate(*figure);
   plan.head.notes.push_back(
       {Severity::info, fmt::format("{}: {}", choice->rate->path,
                                    can_be ? "the rate in Hz" : "is not a possible rate")});
@@ -103,20 +103,20 @@ Result<Plan> plan_matlab(const OpenHdf5& file, const ReadOptions& options) {
   return plan;
 }
 
-Hdf5Figures figures_of(const Hdf5Dataset& dataset, const MatTable& table) {
-  if (table.width > 1 || dataset.is_complex) return Hdf5Figures::doubles;
-  if (dataset.type == "int64") return Hdf5Figures::int64;
-  return dataset.type == "uint64" ? Hdf5Figures::uint64 : Hdf5Figures::doubles;
+Figures figures_of(const Dataset& dataset, const matlab::Table& table) {
+  if (table.width > 1 || dataset.is_complex) return Figures::doubles;
+  if (dataset.type == "int64") return Figures::int64;
+  return dataset.type == "uint64" ? Figures::uint64 : Figures::doubles;
 }
 
-const Hdf5Dataset& dataset_of(const OpenHdf5& file, const MatTable& table) {
+const Dataset& dataset_of(const OpenFile& file, const matlab::Table& table) {
   return file.catalogue.datasets[static_cast<std::size_t>(table.array - file.arrays.data())];
 }
 
-std::vector<Hdf5Request> requests_of(const OpenHdf5& file, std::span<const MatTable> tables) {
-  std::vector<Hdf5Request> requests;
-  for (const MatTable& table : tables) {
-    const Hdf5Dataset& dataset = dataset_of(file, table);
+std::vector<Request> requests_of(const OpenFile& file, std::span<const matlab::Table> tables) {
+  std::vector<Request> requests;
+  for (const matlab::Table& table : tables) {
+    const Dataset& dataset = dataset_of(file, table);
     requests.push_back({.name = table.array->path,
                         .address = dataset.address,
                         .rows = table.rows,
@@ -138,7 +138,7 @@ std::vector<std::vector<std::vector<double>>> beginnings(const FigureStream& str
   return values;
 }
 
-void put_headings(const OpenHdf5& file,
+void put_headings(const OpenFile& file,
                   const FigureStream& stream,
                   const ReadOptions& options,
                   Plan& plan) {
@@ -147,17 +147,17 @@ void put_headings(const OpenHdf5& file,
     return;
   }
   std::vector<std::string> vectors;
-  for (const MatTable& table : plan.tables)
+  for (const matlab::Table& table : plan.tables)
     if (table.width == 1) vectors.push_back(table.name());
   const bool is_timed = plan.head.rate_hz || time_among(vectors, options);
   plan.head.headings =
-      hdf5_headings(file.catalogue, plan.tables, beginnings(stream), is_timed, plan.head.notes);
+      headings_of(file.catalogue, plan.tables, beginnings(stream), is_timed, plan.head.notes);
   note_texts(file.catalogue, plan.tables, plan.head.notes);
 }
 
 /// Integer stamps keep all digits, and stamps with a start in an attribute get that as their
 /// origin.
-void declare_stamps(const OpenHdf5& file,
+void declare_stamps(const OpenFile& file,
                     std::span<const Destination> places,
                     const ReadOptions& options,
                     FigureStream& stream,
@@ -166,12 +166,12 @@ void declare_stamps(const OpenHdf5& file,
   if (!time) return;
   const std::size_t request = places[*time].request;
   const Unit unit = read_label(plan.head.headings[*time]).unit;
-  if (stream.requests()[request].figures != Hdf5Figures::doubles) {
+  if (stream.requests()[request].figures != Figures::doubles) {
     plan.head.stamps = {*time, unit, {stream.put_origin_at_first(request), 0}};
     return;
   }
   const std::string& path = plan.tables[request].array->path;
-  for (const Hdf5Attribute& attribute : file.catalogue.attributes)
+  for (const Attribute& attribute : file.catalogue.attributes)
     if (attribute.owner == path && attribute.name == "start_time_ns" && attribute.integer &&
         unit.symbol == "s")
       plan.head.stamps = {*time, unit, {*attribute.integer, -9}};
@@ -179,8 +179,7 @@ void declare_stamps(const OpenHdf5& file,
 
 }  // namespace
 
-Result<std::unique_ptr<TableReader>> open_hdf5_table(const OpenHdf5& file,
-                                                     const ReadOptions& options) {
+Result<std::unique_ptr<TableReader>> open_table(const OpenFile& file, const ReadOptions& options) {
   auto planned = file.is_matlab ? plan_matlab(file, options) : plan_plain(file, options);
   if (!planned) return planned.error();
   Plan plan = std::move(planned).value();
@@ -195,8 +194,8 @@ Result<std::unique_ptr<TableReader>> open_hdf5_table(const OpenHdf5& file,
   declare_stamps(file, places, options, stream, plan);
   plan.head.columns = places.size();
   plan.head.rows = plan.tables.front().rows;
-  return std::unique_ptr<TableReader>(std::make_unique<Hdf5TableReader>(
-      std::move(stream), std::move(plan.head), std::move(places)));
+  return std::unique_ptr<TableReader>(
+      std::make_unique<DatasetReader>(std::move(stream), std::move(plan.head), std::move(places)));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

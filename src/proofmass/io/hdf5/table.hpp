@@ -11,20 +11,20 @@
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/io/table_reader.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
 /// An open HDF5 file and its contents.
-struct OpenHdf5 {
+struct OpenFile {
   LibraryFile file;
-  Hdf5Catalogue catalogue{};
-  std::vector<MatArray> arrays{};  ///< arrays_of(catalogue)
-  std::vector<Note> notes{};       ///< about decompression
-  bool is_matlab = false;          ///< version 7.3
+  Catalogue catalogue{};
+  std::vector<matlab::Array> arrays{};  ///< arrays_of(catalogue)
+  std::vector<Note> notes{};            ///< about decompression
+  bool is_matlab = false;               ///< version 7.3
 };
 
 /// Selects the datasets of the recording and starts to read them. `file` need not outlive the
-/// reader. Errors: those of open_hdf5().
-[[nodiscard]] Result<std::unique_ptr<TableReader>> open_hdf5_table(const OpenHdf5& file,
-                                                                   const ReadOptions& options);
+/// reader. Errors: those of open().
+[[nodiscard]] Result<std::unique_ptr<TableReader>> open_table(const OpenFile& file,
+                                                              const ReadOptions& options);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -5,11 +5,11 @@
 
 #include "proofmass/io/hdf5/handle.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
-Hdf5Handle text_type(std::string_view text) {
-  Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+Handle text_type(std::string_view text) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, std::max<std::size_t>(text.size(), 1));
   H5Tset_strpad(type, H5T_STR_NULLPAD);
   H5Tset_cset(type, H5T_CSET_UTF8);
@@ -19,15 +19,14 @@ Hdf5Handle text_type(std::string_view text) {
 }  // namespace
 
 bool put_attribute(hid_t owner, const char* name, hid_t type, const void* value) {
-  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Hdf5Handle attribute(H5Acreate2(owner, name, type, space, H5P_DEFAULT, H5P_DEFAULT),
-                             H5Aclose);
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle attribute(H5Acreate2(owner, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   return attribute && H5Awrite(attribute, type, value) >= 0;
 }
 
 bool put_text(hid_t owner, const std::string& name, const std::string& text) {
   // Of variable length, like the texts of h5py.
-  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, H5T_VARIABLE);
   H5Tset_cset(type, H5T_CSET_UTF8);
   const char* value = text.c_str();
@@ -35,12 +34,12 @@ bool put_text(hid_t owner, const std::string& name, const std::string& text) {
 }
 
 bool put_text_dataset(hid_t group, const std::string& name, const std::string& text) {
-  const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Hdf5Handle type = text_type(text);
-  const Hdf5Handle dataset(
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle type = text_type(text);
+  const Handle dataset(
       H5Dcreate2(group, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
       H5Dclose);
   return dataset && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) >= 0;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

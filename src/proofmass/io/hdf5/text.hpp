@@ -3,7 +3,7 @@
 #include <hdf5.h>
 #include <string>
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 
 // Values written beside the numbers; false if they cannot be written.
 
@@ -13,4 +13,4 @@ namespace proofmass::io {
 /// A text of any length: attributes are limited to 64 KiB.
 [[nodiscard]] bool put_text_dataset(hid_t group, const std::string& name, const std::string& text);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -12,7 +12,7 @@
 #include "proofmass/io/hdf5/text.hpp"
 #include "proofmass/io/reading/recording_writers.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::hdf5 {
 namespace {
 
 /// The library has global state.
@@ -35,7 +35,7 @@ std::string link_name(std::string name, hid_t group) {
 /// The system's reason if the library passes one on, else the library's.
 std::string reason() {
   constexpr std::string_view before = "error message = '";
-  const std::string message = hdf5_reason();
+  const std::string message = failure_reason();
   const std::size_t begin = message.find(before);
   if (begin == std::string::npos) return fmt::format("the HDF5 library says \"{}\"", message);
   const std::string words = message.substr(begin + before.size());
@@ -57,44 +57,44 @@ class Column {
     if (count == 0) return true;
     rows_ += count;
     if (H5Dset_extent(dataset_, &rows_) < 0) return false;
-    const Hdf5Handle space(H5Dget_space(dataset_), H5Sclose);
-    const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    const Handle space(H5Dget_space(dataset_), H5Sclose);
+    const Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
     return H5Sselect_hyperslab(space, H5S_SELECT_SET, &begin, nullptr, &count, nullptr) >= 0 &&
            H5Dwrite(dataset_, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values.data()) >= 0;
   }
 
  private:
-  static Hdf5Handle create(hid_t group, const std::string& name, hsize_t chunk_rows) {
+  static Handle create(hid_t group, const std::string& name, hsize_t chunk_rows) {
     constexpr hsize_t none = 0;
     constexpr hsize_t unlimited = H5S_UNLIMITED;
-    const Hdf5Handle space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
-    const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    const Handle space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
+    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_chunk(creation, 1, &chunk_rows);
-    const Hdf5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+    const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
     constexpr std::size_t slots = 11;
     H5Pset_chunk_cache(access, slots, chunk_rows * sizeof(double), 1.0);
-    const Hdf5Handle link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+    const Handle link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_char_encoding(link, H5T_CSET_UTF8);
     return {H5Dcreate2(group, name.c_str(), H5T_IEEE_F64LE, space, link, creation, access),
             H5Dclose};
   }
 
-  Hdf5Handle dataset_;
+  Handle dataset_;
   hsize_t rows_ = 0;
 };
 
 /// A group that stores the order of creation of its members.
-Hdf5Handle ordered_group(hid_t file, const char* name) {
-  const Hdf5Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+Handle ordered_group(hid_t file, const char* name) {
+  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
   H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   return {H5Gcreate2(file, name, H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose};
 }
 
-class Hdf5Writer final : public RecordingWriter {
+class Writer final : public RecordingWriter {
  public:
-  explicit Hdf5Writer(std::unique_ptr<OutputFile> output)
+  explicit Writer(std::unique_ptr<OutputFile> output)
       : output_(std::move(output)), file_(-1, H5Fclose), group_(-1, H5Gclose) {}
-  ~Hdf5Writer() override {
+  ~Writer() override {
     const std::lock_guard lock(library());
     close();
   }
@@ -189,20 +189,20 @@ class Hdf5Writer final : public RecordingWriter {
   }
 
   std::unique_ptr<OutputFile> output_;
-  Hdf5Handle file_;
-  Hdf5Handle group_;
+  Handle file_;
+  Handle group_;
   std::vector<Column> columns_;
   bool has_stamps_ = false;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<RecordingWriter>> hdf5_writer(std::unique_ptr<OutputFile> file,
-                                                     const WriterHead& head,
-                                                     const WriteOptions& options) {
-  auto writer = std::make_unique<Hdf5Writer>(std::move(file));
+Result<std::unique_ptr<RecordingWriter>> create(std::unique_ptr<OutputFile> file,
+                                                const WriterHead& head,
+                                                const WriteOptions& options) {
+  auto writer = std::make_unique<Writer>(std::move(file));
   if (const Status begun = writer->begin(head, options); !begun) return begun.error();
   return std::unique_ptr<RecordingWriter>(std::move(writer));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::hdf5

@@ -15,13 +15,13 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/written_test_support.hpp"
 
-namespace proofmass::io::hdf5_writer_test {
+namespace proofmass::io::hdf5::writer_test {
 namespace {
 
-class Hdf5Written : public testing::Test {
+class Written : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has_hdf5_library()) GTEST_SKIP() << "built without the HDF5 library";
+    if (!has_library()) GTEST_SKIP() << "built without the HDF5 library";
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     folder_ = std::filesystem::temp_directory_path() / ("proofmass_" + std::string(test->name()));
     std::filesystem::remove_all(folder_);
@@ -41,7 +41,7 @@ class Hdf5Written : public testing::Test {
     auto file = create_file(path());
     if (!file) return file.error();
     const bool has_stamps = !recording.time.is_uniform();
-    auto opened = hdf5_writer(std::move(file).value(), {recording, has_stamps}, options);
+    auto opened = create(std::move(file).value(), {recording, has_stamps}, options);
     if (!opened) return opened.error();
     return write_in_pieces(**opened, recording, rows);
   }
@@ -68,7 +68,7 @@ void expect_same(const Recording& read, const Recording& written) {
   EXPECT_EQ(read.time.start_ns, written.time.start_ns);
 }
 
-TEST_F(Hdf5Written, ComesBackToTheLastBitHoweverItWasCut) {
+TEST_F(Written, ComesBackToTheLastBitHoweverItWasCut) {
   const Recording recording = troubled(3000);
   for (const std::size_t rows : {std::size_t{1}, std::size_t{700}, std::size_t{3000}}) {
     const auto back = through(recording, rows);
@@ -78,7 +78,7 @@ TEST_F(Hdf5Written, ComesBackToTheLastBitHoweverItWasCut) {
   }
 }
 
-TEST_F(Hdf5Written, ComesBackWhereItIsLongerThanABlock) {
+TEST_F(Written, ComesBackWhereItIsLongerThanABlock) {
   Recording recording = troubled(300'000);
   recording.channels.resize(1);
   const auto back = through(recording, 65'536);
@@ -86,7 +86,7 @@ TEST_F(Hdf5Written, ComesBackWhereItIsLongerThanABlock) {
   expect_same(recording, *back);
 }
 
-TEST_F(Hdf5Written, KeepsAnEvenTimeBaseAsARate) {
+TEST_F(Written, KeepsAnEvenTimeBaseAsARate) {
   for (const auto start_ns : {std::optional<std::int64_t>{}, std::optional<std::int64_t>{-5}}) {
     Recording recording = troubled(100);
     recording.time = {TimeSource::given_rate, "", 100.0 / 3.0, {}, start_ns};
@@ -98,7 +98,7 @@ TEST_F(Hdf5Written, KeepsAnEvenTimeBaseAsARate) {
   }
 }
 
-TEST_F(Hdf5Written, NeedsNoTimeBase) {
+TEST_F(Written, NeedsNoTimeBase) {
   Recording recording = troubled(100);
   recording.time = {};
   const auto back = through(recording, 64);
@@ -107,7 +107,7 @@ TEST_F(Hdf5Written, NeedsNoTimeBase) {
   expect_same(recording, *back);
 }
 
-TEST_F(Hdf5Written, KeepsLabels) {
+TEST_F(Written, KeepsLabels) {
   Recording recording = troubled(100);
   recording.labels = {{"x, up", 0, 7}, {"übrig", 8, 8}, {"x, up", 90, 99}};
   recording.label_channel = "part";
@@ -117,7 +117,7 @@ TEST_F(Hdf5Written, KeepsLabels) {
   EXPECT_EQ(back->label_channel, "part");
 }
 
-TEST_F(Hdf5Written, HasRoomForTextsOfAnyLength) {
+TEST_F(Written, HasRoomForTextsOfAnyLength) {
   WriteOptions options;
   options.metadata = {{"command", "proofmass convert"}, {"long", std::string(100'000, 'x')}};
   options.sensor_file = std::string(100'000, '#');
@@ -131,7 +131,7 @@ TEST_F(Hdf5Written, HasRoomForTextsOfAnyLength) {
   EXPECT_TRUE(is_noted(*back, "long (text), sensor_file (text)")) << notes_of(*back);
 }
 
-TEST_F(Hdf5Written, HasRoomForManyChannels) {
+TEST_F(Written, HasRoomForManyChannels) {
   Recording recording = troubled(5);
   const Channel first = recording.channels[0];
   recording.channels.assign(500, first);
@@ -141,12 +141,12 @@ TEST_F(Hdf5Written, HasRoomForManyChannels) {
   expect_same(recording, *back);
 }
 
-TEST_F(Hdf5Written, LeavesNothingBehindWhereItIsNotFinished) {
+TEST_F(Written, LeavesNothingBehindWhereItIsNotFinished) {
   const Recording recording = troubled(100);
   {
     auto file = create_file(path());
     ASSERT_TRUE(file);
-    auto writer = hdf5_writer(std::move(file).value(), {recording, true}, {});
+    auto writer = create(std::move(file).value(), {recording, true}, {});
     ASSERT_TRUE(writer) << writer.error().message;
     EXPECT_EQ(files(), 1);
   }
@@ -154,7 +154,7 @@ TEST_F(Hdf5Written, LeavesNothingBehindWhereItIsNotFinished) {
   EXPECT_FALSE(std::filesystem::exists(path()));
 }
 
-TEST_F(Hdf5Written, SaysWhenThereIsNoRoom) {
+TEST_F(Written, SaysWhenThereIsNoRoom) {
   const Recording recording = troubled(100);
   const auto has_note = [&] {
     // The same error as for a full disk, except for the wording.
@@ -170,4 +170,4 @@ TEST_F(Hdf5Written, SaysWhenThereIsNoRoom) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::hdf5_writer_test
+}  // namespace proofmass::io::hdf5::writer_test

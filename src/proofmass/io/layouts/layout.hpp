@@ -44,7 +44,9 @@ void read_phyphox_layout(Archive& archive, ArchiveLayout& layout);
 /// x-io's x-IMU: NAME_CalInertialAndMag.csv and similar files have packet numbers instead of times;
 /// the rate is in NAME_Registers.csv, or follows from the packets of NAME_DateTime.csv. Source:
 /// x-io Technologies, x-IMU User Manual 5.2, "Data rates" (2^(value - 1) Hz).
-void read_ximu_layout(Archive& archive, ArchiveLayout& layout);
+namespace ximu {
+void read_layout(Archive& archive, ArchiveLayout& layout);
+}
 /// Sensor Logger: columns x, y, z without units in files named after their sensor. Source: K. T. H.
 /// Choi, "One-Page Unit Reference" of Sensor Logger.
 void read_sensor_logger_layout(Archive& archive, ArchiveLayout& layout);

@@ -20,7 +20,7 @@ constexpr std::size_t most_looked_at = 512;
 
 /// The supported programs, one line each.
 constexpr std::array layouts = {read_named_sensors, read_sensor_logger_layout, read_phyphox_layout,
-                                read_ximu_layout};
+                                ximu::read_layout};
 
 /// True if a file is irrelevant: hidden, or created by a desktop.
 bool is_litter(std::string_view name) {

@@ -16,7 +16,7 @@
 #include "proofmass/io/shown_text.hpp"
 #include "proofmass/io/text/unit_in_text.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::lvm {
 namespace {
 
 using Fields = std::vector<std::string>;
@@ -101,16 +101,16 @@ std::optional<std::int64_t> start_of(std::string_view date, std::string_view tim
   return instant_ns(*clock);
 }
 
-void take_file_tag(std::string_view tag, std::string_view value, LvmFile& file) {
+void take_file_tag(std::string_view tag, std::string_view value, File& file) {
   constexpr std::array<std::string_view, 3> stated{"Operator", "Description", "Project"};
   if (tag == "Decimal_Separator" && !value.empty()) {
     file.point = value.front() == ',' ? ',' : '.';
     file.point_is_stated = true;
   } else if (tag == "X_Columns") {
     const std::string which = lower(value);
-    file.x = which.starts_with("no")      ? LvmX::no
-             : which.starts_with("multi") ? LvmX::multi
-                                          : LvmX::one;
+    file.x = which.starts_with("no")      ? XColumns::no
+             : which.starts_with("multi") ? XColumns::multi
+                                          : XColumns::one;
   } else if (tag == "Time_Pref") {
     file.is_absolute = lower(value).starts_with("absolute");
   } else if (std::ranges::find(stated, tag) != stated.end()) {
@@ -120,17 +120,17 @@ void take_file_tag(std::string_view tag, std::string_view value, LvmFile& file) 
 
 }  // namespace
 
-bool is_lvm_tag(std::string_view line) {
+bool is_tag(std::string_view line) {
   return !tag_of(line).empty();
 }
 
-bool is_lvm_mark(std::string_view line, std::string_view word) {
+bool is_mark(std::string_view line, std::string_view word) {
   return line.starts_with("***") && line.substr(3).starts_with(word) &&
          line.substr(3 + word.size()).starts_with("***");
 }
 
-Result<LvmFile> read_lvm_file_header(LineReader& lines) {
-  LvmFile file;
+Result<File> read_file_header(LineReader& lines) {
+  File file;
   for (;;) {
     const auto there = lines.next();
     if (!there) return there.error();
@@ -139,7 +139,7 @@ Result<LvmFile> read_lvm_file_header(LineReader& lines) {
                                               "***End_of_Header***",
                                               lines.number())};
     const std::string_view line = lines.text();
-    if (is_lvm_mark(line, "End_of_Header")) return file;
+    if (is_mark(line, "End_of_Header")) return file;
     const std::string_view tag = tag_of(line);
     if (tag.empty() || line.size() <= tag.size()) continue;
     // The character after the tag is the separator, whatever its name.
@@ -150,7 +150,7 @@ Result<LvmFile> read_lvm_file_header(LineReader& lines) {
 
 /// Fields of a line by their column; if separator and decimal mark are the same character, digits
 /// after it belong to the previous number.
-Fields LvmSegmentHeader::fields_of(std::string_view line) const {
+Fields SegmentHeader::fields_of(std::string_view line) const {
   std::vector<std::string_view> views;
   split_fields(line, file_.separator, views);
   Fields fields;
@@ -170,7 +170,7 @@ Fields LvmSegmentHeader::fields_of(std::string_view line) const {
   return fields;
 }
 
-void LvmSegmentHeader::add(std::string_view line) {
+void SegmentHeader::add(std::string_view line) {
   const std::string_view tag = tag_of(line);
   if (tag.empty()) return;
   constexpr std::array<std::string_view, 7> stated{
@@ -199,9 +199,9 @@ void LvmSegmentHeader::add(std::string_view line) {
     delta_x_ = fields_of(line);
 }
 
-LvmChannel LvmSegmentHeader::channel(std::size_t index, Fields& unknown_units) const {
-  LvmChannel channel;
-  channel.column = file_.x == LvmX::multi ? 2 * index + 1 : index + 1;
+Channel SegmentHeader::channel(std::size_t index, Fields& unknown_units) const {
+  Channel channel;
+  channel.column = file_.x == XColumns::multi ? 2 * index + 1 : index + 1;
   const std::string_view name = field(names_, channel.column);
   channel.heading = name.empty() ? fmt::format("channel_{}", index + 1) : shown(name);
   const std::string_view unit = field(units_, channel.column);
@@ -227,20 +227,20 @@ LvmChannel LvmSegmentHeader::channel(std::size_t index, Fields& unknown_units) c
 }
 
 /// Only columns that occur in the lines present.
-std::size_t LvmSegmentHeader::count_channels() const {
+std::size_t SegmentHeader::count_channels() const {
   std::size_t stated = std::max({names_.size(), samples_.size(), delta_x_.size()});
   while (stated > 0 && field(names_, stated - 1).empty() && field(samples_, stated - 1).empty() &&
          field(delta_x_, stated - 1).empty())
     --stated;
   if (stated > 1 && lower(field(names_, stated - 1)) == "comment") --stated;
   if (stated == 0) return 0;
-  const std::size_t count = file_.x == LvmX::multi ? stated / 2 : stated - 1;
+  const std::size_t count = file_.x == XColumns::multi ? stated / 2 : stated - 1;
   return channels_ > 0 ? std::min(count, channels_) : count;
 }
 
-LvmSegment LvmSegmentHeader::finish(std::string_view names) {
+Segment SegmentHeader::finish(std::string_view names) {
   names_ = fields_of(names);
-  LvmSegment segment;
+  Segment segment;
   const std::size_t count = count_channels();
   Fields unknown_units;
   for (std::size_t i = 0; i < count; ++i) segment.channels.push_back(channel(i, unknown_units));
@@ -257,4 +257,4 @@ LvmSegment LvmSegmentHeader::finish(std::string_view names) {
   return segment;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::lvm

@@ -4,7 +4,7 @@
 #include "proofmass/io/lvm/specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io::lvm_test {
+namespace proofmass::io::lvm::lvm_test {
 namespace {
 
 using namespace specimen;
@@ -269,4 +269,4 @@ TEST(Lvm, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::lvm_test
+}  // namespace proofmass::io::lvm::lvm_test

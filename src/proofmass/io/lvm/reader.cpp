@@ -13,25 +13,25 @@
 #include "proofmass/io/table_reader.hpp"
 #include "proofmass/io/text/wording.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::lvm {
 namespace {
 
 /// State shared by all tables of a file.
 struct OpenLvm {
   std::unique_ptr<RandomBytes> bytes;
-  LvmContents contents;
+  Contents contents;
 };
 
 constexpr std::int64_t second_ns = 1'000'000'000;
 /// From the beginning of LabVIEW's calendar, 1904, to 1970.
 constexpr std::int64_t seconds_1904_to_1970 = 2'082'844'800;
 
-class LvmReader final : public TableReader {
+class Reader final : public TableReader {
  public:
-  LvmReader(std::shared_ptr<const OpenLvm> file, const LvmTable& table)
+  Reader(std::shared_ptr<const OpenLvm> file, const Table& table)
       : file_(std::move(file)),
         table_(table),
-        timing_(time_lvm(table)),
+        timing_(timing_of(table)),
         rows_(*file_->bytes, file_->contents.file, table),
         figures_(table.channels.size()) {}
 
@@ -44,7 +44,7 @@ class LvmReader final : public TableReader {
     std::ranges::copy(table_.notes, std::back_inserter(head_.notes));
     std::ranges::copy(timing_.notes, std::back_inserter(head_.notes));
     place_time();
-    for (const LvmChannel& channel : table_.channels) head_.headings.push_back(channel.heading);
+    for (const Channel& channel : table_.channels) head_.headings.push_back(channel.heading);
     head_.columns = head_.headings.size();
     report();
     rewind();
@@ -167,8 +167,8 @@ class LvmReader final : public TableReader {
     if (timing_.start_ns)
       head_.notes.push_back({Severity::info, "Date and Time of the file are taken as UTC"});
     double apart_s = 0.0;
-    const LvmChannel& first = table_.channels.front();
-    for (const LvmChannel& channel : table_.channels)
+    const Channel& first = table_.channels.front();
+    for (const Channel& channel : table_.channels)
       if (channel.start_ns && first.start_ns)
         apart_s = std::max(
             apart_s, std::abs(static_cast<double>(*channel.start_ns - *first.start_ns) * 1e-9));
@@ -179,9 +179,9 @@ class LvmReader final : public TableReader {
   }
 
   std::shared_ptr<const OpenLvm> file_;
-  const LvmTable& table_;
-  LvmTiming timing_;
-  LvmRowParser rows_;
+  const Table& table_;
+  Timing timing_;
+  RowParser rows_;
   std::vector<double> figures_;
   TableHead head_;
   bool has_x_column_ = false;
@@ -189,9 +189,9 @@ class LvmReader final : public TableReader {
   std::size_t row_ = 0;
 };
 
-std::vector<Note> LvmReader::notes() const {
+std::vector<Note> Reader::notes() const {
   std::vector<Note> notes = file_->bytes->notes();
-  const LvmFaults& faults = rows_.faults();
+  const Faults& faults = rows_.faults();
   if (faults.comments > 0)
     notes.push_back(
         {Severity::info, fmt::format("comments beside the rows: {}, the first on line {}: \"{}\"",
@@ -212,8 +212,8 @@ std::vector<Note> LvmReader::notes() const {
                                                 "figure is NaN",
                                                 *faults.cut_line)});
   std::size_t few = 0;
-  const LvmRows* first = nullptr;
-  for (const LvmRows& segment : table_.segments)
+  const Rows* first = nullptr;
+  for (const Rows& segment : table_.segments)
     if (segment.count < segment.claimed && few++ == 0) first = &segment;
   if (first != nullptr)
     notes.push_back(
@@ -224,12 +224,12 @@ std::vector<Note> LvmReader::notes() const {
   return notes;
 }
 
-class LvmTables final : public TableFile {
+class Tables final : public TableFile {
  public:
-  explicit LvmTables(std::shared_ptr<const OpenLvm> file) : file_(std::move(file)) {
-    for (const LvmTable& table : file_->contents.tables) {
-      TableSummary summary{table.name, {}, table.rows(), time_lvm(table).rate_hz};
-      for (const LvmChannel& channel : table.channels) summary.headings.push_back(channel.heading);
+  explicit Tables(std::shared_ptr<const OpenLvm> file) : file_(std::move(file)) {
+    for (const Table& table : file_->contents.tables) {
+      TableSummary summary{table.name, {}, table.rows(), timing_of(table).rate_hz};
+      for (const Channel& channel : table.channels) summary.headings.push_back(channel.heading);
       summaries_.push_back(std::move(summary));
     }
   }
@@ -237,7 +237,7 @@ class LvmTables final : public TableFile {
   [[nodiscard]] std::span<const TableSummary> tables() const override { return summaries_; }
   [[nodiscard]] Result<std::unique_ptr<RecordingReader>> open(std::size_t table,
                                                               const ReadOptions& options) override {
-    auto reader = std::make_unique<LvmReader>(file_, file_->contents.tables[table]);
+    auto reader = std::make_unique<Reader>(file_, file_->contents.tables[table]);
     if (const Status opened = reader->open(); !opened) return opened.error();
     return recording_reader_of(std::move(reader), options);
   }
@@ -249,22 +249,22 @@ class LvmTables final : public TableFile {
 
 }  // namespace
 
-bool claims_lvm(std::string_view head, std::string_view) {
+bool claims(std::string_view head, std::string_view) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (head.starts_with(byte_order_mark)) head.remove_prefix(byte_order_mark.size());
   return head.starts_with("LabVIEW Measurement");
 }
 
-Result<std::unique_ptr<TableFile>> open_lvm(std::unique_ptr<PeekSource> source,
-                                            const ReadOptions& options) {
+Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
+                                        const ReadOptions& options) {
   auto bytes = random_bytes_of(std::move(source), options.progress);
   if (!bytes) return bytes.error();
   auto file = std::make_shared<OpenLvm>();
   file->bytes = std::move(bytes).value();
-  auto contents = list_lvm(*file->bytes, options.progress);
+  auto contents = list_segments(*file->bytes, options.progress);
   if (!contents) return contents.error();
   file->contents = std::move(contents).value();
-  return std::unique_ptr<TableFile>(std::make_unique<LvmTables>(std::move(file)));
+  return std::unique_ptr<TableFile>(std::make_unique<Tables>(std::move(file)));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::lvm

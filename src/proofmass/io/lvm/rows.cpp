@@ -8,7 +8,7 @@
 #include "proofmass/io/decimal.hpp"
 #include "proofmass/io/shown_text.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::lvm {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -23,34 +23,34 @@ int decimals_in(std::string_view field, char point) {
 
 }  // namespace
 
-LvmRowParser::LvmRowParser(const RandomBytes& bytes, const LvmFile& file, const LvmTable& table)
+RowParser::RowParser(const RandomBytes& bytes, const File& file, const Table& table)
     : bytes_(bytes), file_(file), table_(table), stamps_(StampSpelling::figures, file.point) {
   uses_.assign(table.columns_in_file + 1, skipped);
   for (std::size_t c = 0; c < table.channels.size(); ++c) {
     const std::size_t column = table.channels[c].column;
     uses_[column] = static_cast<int>(c);
-    if (file.x == LvmX::multi) uses_[column - 1] = further_x;
+    if (file.x == XColumns::multi) uses_[column - 1] = further_x;
   }
   if (table.x_column) uses_[*table.x_column] = x_value;
   uses_[table.columns_in_file] = comment;
 }
 
-void LvmRowParser::begin(const LvmRows& segment) {
+void RowParser::begin(const Rows& segment) {
   lines_ = std::make_unique<LineReader>(bytes_, segment.offset, segment.line);
 }
 
-Result<bool> LvmRowParser::row(std::span<double> figures, double& x) {
+Result<bool> RowParser::row(std::span<double> figures, double& x) {
   for (;;) {
     const auto there = lines_->next();
     if (!there || !*there) return there;
-    if (is_lvm_row(lines_->text(), file_)) break;
+    if (is_data_row(lines_->text(), file_)) break;
   }
   parse(lines_->text(), figures, x);
   return true;
 }
 
 /// A separator inside a number can only be its decimal mark, which is then read with the number.
-const char* LvmRowParser::end_of_field(const char* begin, const char* end) const {
+const char* RowParser::end_of_field(const char* begin, const char* end) const {
   if (file_.separator == file_.point && *begin != file_.separator) {
     Decimal decimal;
     const char* behind = scan_decimal(begin, file_.point, decimal);
@@ -60,7 +60,7 @@ const char* LvmRowParser::end_of_field(const char* begin, const char* end) const
   return found == nullptr ? end : static_cast<const char*>(found);
 }
 
-void LvmRowParser::parse(std::string_view line, std::span<double> figures, double& x) {
+void RowParser::parse(std::string_view line, std::span<double> figures, double& x) {
   std::ranges::fill(figures, nan);
   x = nan;
   Row row;
@@ -85,13 +85,13 @@ void LvmRowParser::parse(std::string_view line, std::span<double> figures, doubl
 }
 
 /// Handles the fields that are not channel values.
-void LvmRowParser::take_field(int use, std::string_view field, Row& row) {
+void RowParser::take_field(int use, std::string_view field, Row& row) {
   if (use == x_value) row.x = field;
   if (use == further_x && field != row.x && !trimmed(field).empty()) row.has_other_x = true;
   if (use == comment) take_comment(field);
 }
 
-void LvmRowParser::judge(const Row& row, std::span<double> figures) {
+void RowParser::judge(const Row& row, std::span<double> figures) {
   if (row.has_other_x && faults_.other_x++ == 0) faults_.other_x_line = lines_->number();
   if (decimals_ && lines_->is_ended()) return;
   // All numbers have the same count of decimals: fewer at the end of the file mean truncation.
@@ -105,7 +105,7 @@ void LvmRowParser::judge(const Row& row, std::span<double> figures) {
 }
 
 /// End of the field; its value, or NaN.
-const char* LvmRowParser::parse_figure(const char* begin, const char* end, double& figure) {
+const char* RowParser::parse_figure(const char* begin, const char* end, double& figure) {
   Decimal decimal;
   const char* behind =
       *begin == file_.separator ? nullptr : scan_decimal(begin, file_.point, decimal);
@@ -118,7 +118,7 @@ const char* LvmRowParser::parse_figure(const char* begin, const char* end, doubl
   return behind;
 }
 
-double LvmRowParser::read_figure(std::string_view field) {
+double RowParser::read_figure(std::string_view field) {
   const Cell cell = read_cell(field, file_.point);
   if (cell.kind == CellKind::text && faults_.words++ == 0) {
     faults_.word_line = lines_->number();
@@ -127,10 +127,10 @@ double LvmRowParser::read_figure(std::string_view field) {
   return cell.value;
 }
 
-void LvmRowParser::take_comment(std::string_view field) {
+void RowParser::take_comment(std::string_view field) {
   if (trimmed(field).empty() || faults_.comments++ > 0) return;
   faults_.comment_line = lines_->number();
   faults_.comment = shown(field);
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::lvm

@@ -12,10 +12,10 @@
 #include "proofmass/io/stamp_reader.hpp"
 #include "proofmass/io/text/line_reader.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::lvm {
 
 /// Faults of the rows.
-struct LvmFaults {
+struct Faults {
   std::size_t comments = 0;
   std::size_t comment_line = 0;  ///< line of the first
   std::string comment;           ///< text of the first
@@ -28,10 +28,10 @@ struct LvmFaults {
 };
 
 /// Parses the rows of a table, segment by segment.
-class LvmRowParser {
+class RowParser {
  public:
   /// `file` and `table` must outlive the parser.
-  LvmRowParser(const RandomBytes& bytes, const LvmFile& file, const LvmTable& table);
+  RowParser(const RandomBytes& bytes, const File& file, const Table& table);
 
   /// The first X value, exact; nullopt if there is none.
   [[nodiscard]] const std::optional<StampOrigin>& first_x() const { return stamps_.origin(); }
@@ -39,14 +39,14 @@ class LvmRowParser {
   [[nodiscard]] int decimals() const { return decimals_.value_or(0); }
 
   /// Starts a segment, whose rows row() then reads.
-  void begin(const LvmRows& segment);
+  void begin(const Rows& segment);
   /// Reads a row: values of the channels, and X minus the first, NaN where missing; false at the
   /// end of the file. Errors: corrupt, unreadable.
   [[nodiscard]] Result<bool> row(std::span<double> figures, double& x);
 
   /// Clears the faults; the first X value is kept.
   void forget() { faults_ = {}; }
-  [[nodiscard]] const LvmFaults& faults() const { return faults_; }
+  [[nodiscard]] const Faults& faults() const { return faults_; }
   [[nodiscard]] std::uint64_t offset() const { return lines_ ? lines_->offset() : 0; }
 
  private:
@@ -68,13 +68,13 @@ class LvmRowParser {
   void judge(const Row& row, std::span<double> figures);
 
   const RandomBytes& bytes_;
-  const LvmFile& file_;
-  const LvmTable& table_;
+  const File& file_;
+  const Table& table_;
   std::vector<int> uses_;  ///< per file column: the channel, or one of the above
   std::unique_ptr<LineReader> lines_;
   StampReader stamps_;
   std::optional<int> decimals_;
-  LvmFaults faults_;
+  Faults faults_;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::lvm

@@ -9,7 +9,7 @@
 #include "proofmass/io/shown_text.hpp"
 #include "proofmass/io/text/wording.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::lvm {
 namespace {
 
 /// Reads a file sequentially.
@@ -18,8 +18,8 @@ class Lister {
   Lister(const RandomBytes& file, const Progress& progress)
       : file_(file), progress_(progress), lines_(file, 0, 1) {}
 
-  Result<LvmContents> run() {
-    auto header = read_lvm_file_header(lines_);
+  Result<Contents> run() {
+    auto header = read_file_header(lines_);
     if (!header) return header.error();
     contents_.file = std::move(header).value();
     if (const Status listed = list(); !listed) return listed.error();
@@ -55,14 +55,14 @@ class Lister {
 
   /// A line that is not a row.
   Status read_other(std::string_view line) {
-    if (is_lvm_mark(line, "Start_Special")) return skip_special();
+    if (is_mark(line, "Start_Special")) return skip_special();
     if (line.starts_with("LabVIEW Measurement")) {
-      const auto again = read_lvm_file_header(lines_);
+      const auto again = read_file_header(lines_);
       return again ? Status(Done{}) : note_cut("header");
     }
-    if (is_lvm_tag(line)) return read_segment();
+    if (is_tag(line)) return read_segment();
     if (line.find_first_not_of(" \t,;") != std::string_view::npos &&
-        !is_lvm_mark(line, "End_of_Header"))
+        !is_mark(line, "End_of_Header"))
       pass_over();
     return Done{};
   }
@@ -87,7 +87,7 @@ class Lister {
                                                               first_line)});
         return Done{};
       }
-      if (is_lvm_mark(lines_.text(), "End_Special")) break;
+      if (is_mark(lines_.text(), "End_Special")) break;
       if (kind.empty()) kind = shown(lines_.text());
     }
     if (specials_.size() < 16) ++specials_[kind.empty() ? "empty" : kind];
@@ -95,9 +95,9 @@ class Lister {
   }
 
   Status read_segment() {
-    LvmSegmentHeader header(contents_.file);
-    while (!is_lvm_mark(lines_.text(), "End_of_Header")) {
-      if (is_lvm_mark(lines_.text(), "Start_Special")) {
+    SegmentHeader header(contents_.file);
+    while (!is_mark(lines_.text(), "End_of_Header")) {
+      if (is_mark(lines_.text(), "Start_Special")) {
         if (const Status skipped = skip_special(); !skipped) return skipped;
       } else {
         header.add(lines_.text());
@@ -116,7 +116,7 @@ class Lister {
     return Done{};
   }
 
-  void begin_segment(LvmSegment segment) {
+  void begin_segment(Segment segment) {
     ++segments_;
     end_segment();
     current_.clear();
@@ -139,14 +139,14 @@ class Lister {
 
   void place_pending() {
     is_begun_ = true;
-    for (LvmTable& group : pending_) {
-      const LvmChannel& first = group.channels.front();
-      LvmRows rows{lines_.offset(),
-                   lines_.number(),
-                   0,
-                   0,
-                   {first.start_ns, first.x0, first.delta_x, first.delta_half_unit}};
-      for (const LvmChannel& channel : group.channels)
+    for (Table& group : pending_) {
+      const Channel& first = group.channels.front();
+      Rows rows{lines_.offset(),
+                lines_.number(),
+                0,
+                0,
+                {first.start_ns, first.x0, first.delta_x, first.delta_half_unit}};
+      for (const Channel& channel : group.channels)
         rows.claimed = std::max(rows.claimed, channel.samples);
       const auto [same, is_new] = known_.emplace(key_of(group), contents_.tables.size());
       if (is_new) {
@@ -160,9 +160,9 @@ class Lister {
   }
 
   /// The properties that tables must share to be one.
-  static std::string key_of(const LvmTable& table) {
+  static std::string key_of(const Table& table) {
     std::string key;
-    for (const LvmChannel& channel : table.channels)
+    for (const Channel& channel : table.channels)
       key += fmt::format("{}\t{}\n", channel.column, channel.heading);
     return key;
   }
@@ -173,12 +173,12 @@ class Lister {
 
   /// If the header does not state it, the decimal mark is that of the first row.
   bool is_row(std::string_view line) {
-    LvmFile& file = contents_.file;
-    if (file.point_is_stated) return is_lvm_row(line, file);
+    File& file = contents_.file;
+    if (file.point_is_stated) return is_data_row(line, file);
     const bool may_be_comma = file.separator != ',' && line.find(',') != std::string_view::npos &&
                               line.find('.') == std::string_view::npos;
     file.point = may_be_comma ? ',' : '.';
-    file.point_is_stated = is_lvm_row(line, file);
+    file.point_is_stated = is_data_row(line, file);
     return file.point_is_stated;
   }
 
@@ -186,7 +186,7 @@ class Lister {
   void name_tables() {
     std::map<std::string, std::size_t> used;
     if (contents_.tables.size() == 1) contents_.tables[0].name.clear();
-    for (LvmTable& table : contents_.tables) {
+    for (Table& table : contents_.tables) {
       const std::size_t times = ++used[table.name];
       if (times > 1) table.name += fmt::format(" ({})", times);
     }
@@ -217,9 +217,9 @@ class Lister {
   const RandomBytes& file_;
   const Progress& progress_;
   LineReader lines_;
-  LvmContents contents_;
+  Contents contents_;
   std::size_t segments_ = 0;
-  std::vector<LvmTable> pending_;     ///< announced, without a row so far
+  std::vector<Table> pending_;        ///< announced, without a row so far
   std::vector<std::size_t> current_;  ///< tables of the current rows
   bool is_begun_ = false;
   std::map<std::string, std::size_t> specials_;
@@ -232,8 +232,8 @@ class Lister {
 
 }  // namespace
 
-Result<LvmContents> list_lvm(const RandomBytes& file, const Progress& progress) {
+Result<Contents> list_segments(const RandomBytes& file, const Progress& progress) {
   return Lister(file, progress).run();
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::lvm

@@ -8,16 +8,16 @@
 #include "proofmass/io/lvm/header.hpp"
 #include "proofmass/io/lvm/table.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::lvm {
 
 /// Contents of a file.
-struct LvmContents {
-  LvmFile file;
-  std::vector<LvmTable> tables;  ///< those with rows
+struct Contents {
+  File file;
+  std::vector<Table> tables;  ///< those with rows
   std::vector<Note> notes;
 };
 
 /// Reads the headers and locates the rows. Errors: corrupt (no segment), unreadable.
-[[nodiscard]] Result<LvmContents> list_lvm(const RandomBytes& file, const Progress& progress);
+[[nodiscard]] Result<Contents> list_segments(const RandomBytes& file, const Progress& progress);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::lvm

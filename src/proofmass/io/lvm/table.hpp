@@ -10,10 +10,10 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/io/lvm/header.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::lvm {
 
 /// Sampling times of a table's channels in one segment.
-struct LvmClock {
+struct Clock {
   std::optional<std::int64_t> start_ns;
   double x0 = 0.0;
   double delta_x = 0.0;
@@ -21,22 +21,22 @@ struct LvmClock {
 };
 
 /// The rows of one segment.
-struct LvmRows {
+struct Rows {
   std::uint64_t offset = 0;  ///< offset of the first row
   std::size_t line = 0;      ///< line of the first row
   std::size_t count = 0;
   std::size_t claimed = 0;  ///< according to the header, for the longest channel
-  LvmClock clock;
+  Clock clock;
 };
 
 /// Channels sampled together: with one Delta_X, through all segments that have them.
-struct LvmTable {
+struct Table {
   std::string name;
-  std::vector<LvmChannel> channels;  ///< as in the first segment
+  std::vector<Channel> channels;  ///< as in the first segment
   std::optional<std::size_t> x_column;
   bool x_is_time = true;
   std::string x_heading;
-  std::vector<LvmRows> segments;
+  std::vector<Rows> segments;
   std::size_t columns_in_file = 0;  ///< width of the widest row examined, without comments
   std::vector<Note> notes;
 
@@ -45,9 +45,9 @@ struct LvmTable {
 
 /// A segment's channels as tables without rows: those with one Delta_X and a common start. If there
 /// are several, their names contain their rates.
-[[nodiscard]] std::vector<LvmTable> tables_of(const LvmSegment& segment, LvmX x);
+[[nodiscard]] std::vector<Table> tables_of(const Segment& segment, XColumns x);
 
 /// True if a line between headers is a row of numbers; blank lines and words are not.
-[[nodiscard]] bool is_lvm_row(std::string_view line, const LvmFile& file);
+[[nodiscard]] bool is_data_row(std::string_view line, const File& file);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::lvm

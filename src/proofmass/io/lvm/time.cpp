@@ -6,7 +6,7 @@
 
 #include "proofmass/io/text/wording.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::lvm {
 namespace {
 
 double seconds_between(const std::optional<std::int64_t>& from,
@@ -16,17 +16,17 @@ double seconds_between(const std::optional<std::int64_t>& from,
   return static_cast<double>(ns) * 1e-9;
 }
 
-double duration_s(const LvmRows& segment) {
+double duration_s(const Rows& segment) {
   return static_cast<double>(segment.count) * segment.clock.delta_x;
 }
 
 /// Start of the segments, in seconds from the first one's Date and Time.
-std::vector<double> starts_of(const LvmTable& table, LvmTiming& timing) {
+std::vector<double> starts_of(const Table& table, Timing& timing) {
   std::vector<double> starts;
   std::size_t counted_on = 0;
-  const LvmClock& first = table.segments.front().clock;
+  const Clock& first = table.segments.front().clock;
   for (std::size_t i = 0; i < table.segments.size(); ++i) {
-    const LvmClock& clock = table.segments[i].clock;
+    const Clock& clock = table.segments[i].clock;
     double start_s = seconds_between(first.start_ns, clock.start_ns) + clock.x0;
     if (i > 0) {
       const double expected_s = starts[i - 1] + duration_s(table.segments[i - 1]);
@@ -46,8 +46,8 @@ std::vector<double> starts_of(const LvmTable& table, LvmTiming& timing) {
 }
 
 /// The period of a segment from the start of the next one, if it equals Delta_X before rounding.
-double step_of(const LvmTable& table, const std::vector<double>& starts_s, std::size_t i) {
-  const LvmRows& segment = table.segments[i];
+double step_of(const Table& table, const std::vector<double>& starts_s, std::size_t i) {
+  const Rows& segment = table.segments[i];
   const double stated_s = segment.clock.delta_x;
   if (i + 1 == starts_s.size() || segment.count == 0) return stated_s;
   const double step_s = (starts_s[i + 1] - starts_s[i]) / static_cast<double>(segment.count);
@@ -55,8 +55,8 @@ double step_of(const LvmTable& table, const std::vector<double>& starts_s, std::
 }
 
 /// One period for all rows, if the segments are consecutive without gaps.
-std::optional<double> common_step(const LvmTable& table, const std::vector<double>& starts_s) {
-  const LvmClock& clock = table.segments.front().clock;
+std::optional<double> common_step(const Table& table, const std::vector<double>& starts_s) {
+  const Clock& clock = table.segments.front().clock;
   if (!(clock.delta_x > 0.0)) return std::nullopt;
   double step_s = clock.delta_x;
   if (table.segments.size() > 1) {
@@ -81,8 +81,8 @@ std::optional<double> common_step(const LvmTable& table, const std::vector<doubl
   return step_s;
 }
 
-void note_step(const LvmTable& table, LvmTiming& timing) {
-  const LvmClock& clock = table.segments.front().clock;
+void note_step(const Table& table, Timing& timing) {
+  const Clock& clock = table.segments.front().clock;
   if (!(clock.delta_x > 0.0)) {
     timing.notes.push_back({Severity::warning, "no Delta_X above 0: the rate is not known"});
     return;
@@ -98,8 +98,8 @@ void note_step(const LvmTable& table, LvmTiming& timing) {
 
 }  // namespace
 
-LvmTiming time_lvm(const LvmTable& table) {
-  LvmTiming timing;
+Timing timing_of(const Table& table) {
+  Timing timing;
   timing.start_ns = table.segments.front().clock.start_ns;
   timing.starts_s = starts_of(table, timing);
   if (table.x_column) {
@@ -119,4 +119,4 @@ LvmTiming time_lvm(const LvmTable& table) {
   return timing;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::lvm

@@ -7,10 +7,10 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/io/lvm/segments.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::lvm {
 
 /// Times of the rows of a table.
-struct LvmTiming {
+struct Timing {
   /// Common rate of all rows, if one period fits them; nullopt: each row has its own time.
   std::optional<double> rate_hz;
   std::optional<std::int64_t> start_ns;  ///< origin of starts_s
@@ -22,6 +22,6 @@ struct LvmTiming {
 /// Segments begin at their Date and Time + X0; X0 counts from the first segment's if only that
 /// continues the previous segment. Delta_X is written with few digits: if segments are consecutive
 /// within its rounding, the period is determined from their starts.
-[[nodiscard]] LvmTiming time_lvm(const LvmTable& table);
+[[nodiscard]] Timing timing_of(const Table& table);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::lvm

@@ -5,7 +5,7 @@
 
 #include "proofmass/io/matlab/mat_catalogue.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 namespace {
 
 enum class Content { numbers, text, sparse };
@@ -72,7 +72,7 @@ std::optional<Header> read_header(std::string_view bytes) {
                         whole(bytes, 3, big_endian) <= 1 && name_bytes <= longest_name;
   if (!is_known || bytes.size() < fixed + name_bytes) return std::nullopt;
   Header header;
-  header.name = mat_name(bytes.substr(fixed, name_bytes));
+  header.name = name_from(bytes.substr(fixed, name_bytes));
   if (!is_identifier(header.name)) return std::nullopt;
   const Precision& precision = precisions[kind / 10];
   header.machine = *machine;
@@ -95,8 +95,8 @@ std::optional<std::size_t> figure_bytes(const Header& header) {
   return bytes;
 }
 
-void add(const Header& header, const MatRegion& region, MatCatalogue& catalogue) {
-  if (catalogue.arrays.size() + catalogue.skipped.size() >= most_mat_arrays) {
+void add(const Header& header, const Region& region, Catalogue& catalogue) {
+  if (catalogue.arrays.size() + catalogue.skipped.size() >= most_arrays) {
     catalogue.is_cut = true;
     return;
   }
@@ -105,7 +105,7 @@ void add(const Header& header, const MatRegion& region, MatCatalogue& catalogue)
     catalogue.skipped.push_back(fmt::format("{} ({})", header.name, what));
     return;
   }
-  MatArray array;
+  Array array;
   array.path = header.name;
   array.class_name = header.class_name;
   array.shape = {header.rows, header.columns};
@@ -121,8 +121,8 @@ bool is_mat4(std::string_view head) {
   return read_header(head).has_value();
 }
 
-Result<MatCatalogue> list_mat4(std::string_view file) {
-  MatCatalogue catalogue;
+Result<Catalogue> list_mat4(std::string_view file) {
+  Catalogue catalogue;
   catalogue.version = "MAT v4";
   for (std::size_t offset = 0; offset < file.size();) {
     const auto header = read_header(file.substr(offset));
@@ -147,4 +147,4 @@ Result<MatCatalogue> list_mat4(std::string_view file) {
   return catalogue;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

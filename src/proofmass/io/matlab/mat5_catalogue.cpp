@@ -7,13 +7,13 @@
 #include "proofmass/io/matlab/mat5_elements.hpp"
 #include "proofmass/io/matlab/mat_catalogue.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 namespace {
 
 constexpr std::size_t header_bytes = 128;
 constexpr std::size_t deepest = 16;
 
-std::string_view name_of(MatClass array_class) {
+std::string_view name_of(Class array_class) {
   constexpr std::array names = std::to_array<std::string_view>(
       {"", "cell", "struct", "object", "text", "sparse", "double", "single", "int8", "uint8",
        "int16", "uint16", "int32", "uint32", "int64", "uint64", "function handle", "object"});
@@ -23,7 +23,7 @@ std::string_view name_of(MatClass array_class) {
 /// Scans one variable and lists its numeric arrays.
 class Walker {
  public:
-  Walker(MatStream& stream, const MatRegion& region, bool big_endian, MatCatalogue& catalogue)
+  Walker(Stream& stream, const Region& region, bool big_endian, Catalogue& catalogue)
       : stream_(stream),
         region_(region),
         big_endian_(big_endian),
@@ -61,28 +61,28 @@ class Walker {
     return stream_.skip(end - stream_.position());
   }
 
-  Status content(const Place& place, const MatPreface& preface, std::uint64_t end) {
-    const MatClass array_class = preface.array_class;
-    const bool is_nest = array_class == MatClass::cell || array_class == MatClass::structure;
+  Status content(const Place& place, const Preface& preface, std::uint64_t end) {
+    const Class array_class = preface.array_class;
+    const bool is_nest = array_class == Class::cell || array_class == Class::structure;
     if (is_nest && place.depth >= deepest) return leave_out(place, "nested too deeply");
-    if (array_class == MatClass::cell) return cell(place, preface, end);
-    if (array_class == MatClass::structure) return structure(place, preface, end);
-    if (array_class == MatClass::text && is_about_others(place)) return text(place, preface, end);
-    if (array_class < MatClass::double_precision || array_class > MatClass::uint64)
+    if (array_class == Class::cell) return cell(place, preface, end);
+    if (array_class == Class::structure) return structure(place, preface, end);
+    if (array_class == Class::text && is_about_others(place)) return text(place, preface, end);
+    if (array_class < Class::double_precision || array_class > Class::uint64)
       return leave_out(place, name_of(array_class));
     if (preface.count == 0) return leave_out(place, "empty");
     return numbers(place, preface, end);
   }
 
-  Status numbers(const Place& place, const MatPreface& preface, std::uint64_t end) {
+  Status numbers(const Place& place, const Preface& preface, std::uint64_t end) {
     const auto figures = elements_.tag(end);
     if (!figures) return figures.error();
-    const auto type = mat_figure_type(figures->type, big_endian_);
+    const auto type = figure_type(figures->type, big_endian_);
     if (!type)
       return stream_.corrupt(figures->at,
                              fmt::format("an element of type {} where the figures of {} belong",
                                          figures->type, place.path));
-    MatArray array;
+    Array array;
     array.path = place.path;
     array.group_length = place.group_length;
     array.class_name =
@@ -104,7 +104,7 @@ class Walker {
     return group == "names" || group == "units";
   }
 
-  Status text(const Place& place, const MatPreface& preface, std::uint64_t end) {
+  Status text(const Place& place, const Preface& preface, std::uint64_t end) {
     constexpr std::size_t most_bytes = 512;
     if (preface.count == 0) return Done{};
     if (preface.count > most_bytes / 2) return leave_out(place, "text");
@@ -114,7 +114,7 @@ class Walker {
     return Done{};
   }
 
-  Status cell(const Place& place, const MatPreface& preface, std::uint64_t end) {
+  Status cell(const Place& place, const Preface& preface, std::uint64_t end) {
     if (const Status fits = check_room(place, preface.count, end); !fits) return fits;
     for (std::size_t i = 0; i < preface.count && !is_full(); ++i) {
       const Place at{fmt::format("{}{{{}}}", place.path, i + 1), place.path.size(),
@@ -124,7 +124,7 @@ class Walker {
     return Done{};
   }
 
-  Status structure(const Place& place, const MatPreface& preface, std::uint64_t end) {
+  Status structure(const Place& place, const Preface& preface, std::uint64_t end) {
     const auto fields = elements_.field_names(end);
     if (!fields) return fields.error();
     std::size_t members = 0;
@@ -158,7 +158,7 @@ class Walker {
                                   std::size_t members,
                                   std::uint64_t end) const {
     const std::uint64_t left = end - stream_.position();
-    if (members <= left / mat_tag_bytes) return Done{};
+    if (members <= left / tag_bytes) return Done{};
     return stream_.corrupt(stream_.position(),
                            fmt::format("{} claims {} members, more than the {} bytes left",
                                        place.path, members, left));
@@ -170,16 +170,16 @@ class Walker {
   }
 
   bool is_full() {
-    if (catalogue_.arrays.size() + catalogue_.skipped.size() >= most_mat_arrays ||
-        catalogue_.texts.size() >= 4 * most_mat_arrays)
+    if (catalogue_.arrays.size() + catalogue_.skipped.size() >= most_arrays ||
+        catalogue_.texts.size() >= 4 * most_arrays)
       catalogue_.is_cut = true;
     return catalogue_.is_cut;
   }
 
-  MatStream& stream_;
-  const MatRegion& region_;
+  Stream& stream_;
+  const Region& region_;
   bool big_endian_;
-  MatCatalogue& catalogue_;
+  Catalogue& catalogue_;
   Mat5Elements elements_;
 };
 
@@ -197,21 +197,21 @@ bool is_padding(std::string_view bytes) {
 }
 
 /// The variable that begins at `offset`.
-Result<MatRegion> region_at(std::string_view file, std::size_t offset, bool big_endian) {
+Result<Region> region_at(std::string_view file, std::size_t offset, bool big_endian) {
   const std::size_t left = file.size() - offset;
-  if (left < mat_tag_bytes)
+  if (left < tag_bytes)
     return Error{Errc::corrupt,
                  fmt::format("byte {}: breaks off where a variable begins", file.size())};
-  const std::uint32_t type = mat_word(file.data() + offset, big_endian);
-  const std::size_t size = mat_word(file.data() + offset + 4, big_endian);
+  const std::uint32_t type = word_at(file.data() + offset, big_endian);
+  const std::size_t size = word_at(file.data() + offset + 4, big_endian);
   if (type != mi_matrix && type != mi_compressed)
     return Error{Errc::corrupt, fmt::format("byte {}: no variable begins here", offset)};
-  if (size > left - mat_tag_bytes)
+  if (size > left - tag_bytes)
     return Error{Errc::corrupt,
                  fmt::format("byte {}: breaks off within the variable that begins at byte {} and "
                              "claims {} bytes",
                              file.size(), offset, size)};
-  return MatRegion{offset + mat_tag_bytes, size, type == mi_compressed};
+  return Region{offset + tag_bytes, size, type == mi_compressed};
 }
 
 }  // namespace
@@ -220,19 +220,19 @@ bool is_mat5(std::string_view head) {
   return is_big_endian(head).has_value() || head.starts_with("MATLAB 5.0 MAT-file");
 }
 
-Result<MatCatalogue> list_mat5(std::string_view file) {
+Result<Catalogue> list_mat5(std::string_view file) {
   const auto big_endian = is_big_endian(file);
   if (!big_endian && file.size() < header_bytes)
     return Error{Errc::corrupt, fmt::format("byte {}: breaks off within the header", file.size())};
   if (!big_endian)
     return Error{Errc::corrupt, "byte 124: neither version nor order of bytes that are known"};
-  MatCatalogue catalogue;
+  Catalogue catalogue;
   catalogue.version = "MAT v5";
   std::size_t offset = header_bytes;
   while (offset < file.size() && !is_padding(file.substr(offset))) {
     const auto region = region_at(file, offset, *big_endian);
     if (!region) return region.error();
-    MatStream stream(file, *region);
+    Stream stream(file, *region);
     const Status listed = Walker(stream, *region, *big_endian, catalogue).run();
     if (!listed) return listed.error();
     offset = region->offset + region->size;
@@ -240,4 +240,4 @@ Result<MatCatalogue> list_mat5(std::string_view file) {
   return catalogue;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

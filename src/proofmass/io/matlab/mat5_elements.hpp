@@ -11,15 +11,15 @@
 #include "proofmass/io/arrays/figure_type.hpp"
 #include "proofmass/io/matlab/mat_stream.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 
 /// Types of data elements that a reader must distinguish.
 inline constexpr std::uint32_t mi_matrix = 14;
 inline constexpr std::uint32_t mi_compressed = 15;
-inline constexpr std::size_t mat_tag_bytes = 8;
+inline constexpr std::size_t tag_bytes = 8;
 
 /// Classes of arrays.
-enum class MatClass : unsigned {
+enum class Class : unsigned {
   cell = 1,
   structure = 2,
   object = 3,
@@ -32,7 +32,7 @@ enum class MatClass : unsigned {
 };
 
 /// Type and length of a data element, with the data if these are in the tag itself.
-struct MatTag {
+struct Tag {
   std::uint64_t at = 0;     ///< position of the tag
   std::uint64_t begin = 0;  ///< position of the data
   std::uint32_t type = 0;
@@ -42,8 +42,8 @@ struct MatTag {
 };
 
 /// Description of an array before its content.
-struct MatPreface {
-  MatClass array_class{};
+struct Preface {
+  Class array_class{};
   bool is_complex = false;
   bool is_logical = false;
   std::vector<std::size_t> shape;  ///< empty for opaque objects
@@ -52,23 +52,23 @@ struct MatPreface {
 };
 
 /// The unsigned number of four bytes.
-[[nodiscard]] std::uint32_t mat_word(const char* bytes, bool big_endian);
+[[nodiscard]] std::uint32_t word_at(const char* bytes, bool big_endian);
 
 /// Storage of the numbers of an element; nullopt if its type is not numeric.
-[[nodiscard]] std::optional<FigureType> mat_figure_type(std::uint32_t type, bool big_endian);
+[[nodiscard]] std::optional<FigureType> figure_type(std::uint32_t type, bool big_endian);
 
 /// Reads the data elements of one variable. Each length is checked against the remainder of the
 /// enclosing element, `end`. Errors of all functions: corrupt.
 class Mat5Elements {
  public:
-  Mat5Elements(MatStream& stream, bool big_endian) : stream_(stream), big_endian_(big_endian) {}
+  Mat5Elements(Stream& stream, bool big_endian) : stream_(stream), big_endian_(big_endian) {}
 
   /// A tag, which must lie before `end` with all of its data.
-  [[nodiscard]] Result<MatTag> tag(std::uint64_t end);
+  [[nodiscard]] Result<Tag> tag(std::uint64_t end);
   /// Skips to the next element, after the data of this one are read.
-  Status skip_padding(const MatTag& tag, std::uint64_t end);
+  Status skip_padding(const Tag& tag, std::uint64_t end);
   /// Class, shape and name of an array.
-  [[nodiscard]] Result<MatPreface> preface(std::uint64_t end);
+  [[nodiscard]] Result<Preface> preface(std::uint64_t end);
   /// The names of a struct's fields.
   [[nodiscard]] Result<std::vector<std::string>> field_names(std::uint64_t end);
   /// Characters of one byte, UTF-8 or UTF-16, as UTF-8; at most `most` bytes.
@@ -77,12 +77,12 @@ class Mat5Elements {
  private:
   [[nodiscard]] Result<std::string> words(std::uint64_t end, std::size_t most);
   [[nodiscard]] Result<std::string> characters(std::uint64_t end, std::size_t most);
-  [[nodiscard]] Result<std::string> data(const MatTag& tag, std::uint64_t end, std::size_t most);
-  Status read_class(MatPreface& preface, std::uint64_t end);
-  Status read_shape(MatPreface& preface, std::uint64_t end);
+  [[nodiscard]] Result<std::string> data(const Tag& tag, std::uint64_t end, std::size_t most);
+  Status read_class(Preface& preface, std::uint64_t end);
+  Status read_shape(Preface& preface, std::uint64_t end);
 
-  MatStream& stream_;
+  Stream& stream_;
   bool big_endian_;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

@@ -3,7 +3,7 @@
 #include "proofmass/io/bytes/little_endian.hpp"
 #include "proofmass/io/text/utf8.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 namespace {
 
 enum Type : std::uint32_t {
@@ -122,4 +122,4 @@ std::string mat5_texts(std::string_view name, const std::vector<Mat5Text>& texts
                 element(mi_int8, fields) + values);
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

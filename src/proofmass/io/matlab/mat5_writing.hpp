@@ -8,7 +8,7 @@
 
 // Writes the elements of MAT files of version 5, little-endian and uncompressed.
 // Source: The MathWorks, "MAT-File Format" (2019), chapter 1.
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 
 /// Maximum number of values in a variable of doubles.
 inline constexpr std::size_t most_mat5_doubles = ((std::size_t{1} << 31) - 256) / 8;
@@ -30,4 +30,4 @@ struct Mat5Text {
 };
 [[nodiscard]] std::string mat5_texts(std::string_view name, const std::vector<Mat5Text>& texts);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

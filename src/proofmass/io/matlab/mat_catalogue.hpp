@@ -10,16 +10,16 @@
 #include "proofmass/io/arrays/figure_type.hpp"
 #include "proofmass/io/matlab/mat_stream.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 
 /// A numeric array in a MAT file, and its location.
-struct MatArray {
+struct Array {
   std::string path;                ///< "acc", "imu.acc", "runs(2).acc", "parts{3}"
   std::size_t group_length = 0;    ///< length of the path of its struct or cell: "imu"
   std::string_view class_name;     ///< "double", "uint8", "logical", …
   std::vector<std::size_t> shape;  ///< column-major; at least two
   bool is_complex = false;
-  MatRegion region;         ///< the variable that contains it
+  Region region;            ///< the variable that contains it
   std::uint64_t begin = 0;  ///< offset of the (real) values in the variable's stream
   FigureType stored;        ///< may be narrower than the class
 
@@ -31,25 +31,25 @@ struct MatArray {
 };
 
 /// A short text in a struct that describes other variables: "units.acc_x" or "names.acc_x".
-struct MatText {
+struct Text {
   std::string path;
   std::string text;  ///< UTF-8
 };
 
 /// Contents of a MAT file.
-struct MatCatalogue {
+struct Catalogue {
   std::string_view version;          ///< "MAT v5"
-  std::vector<MatArray> arrays;      ///< in the order of the file
-  std::vector<MatText> texts;        ///< in the structs "names" and "units"
+  std::vector<Array> arrays;         ///< in the order of the file
+  std::vector<Text> texts;           ///< in the structs "names" and "units"
   std::vector<std::string> skipped;  ///< "title (text)", "f (function handle)"
   bool is_cut = false;               ///< the list is incomplete
 };
 
 /// Maximum number of listed arrays; a user would not distinguish more.
-inline constexpr std::size_t most_mat_arrays = 4096;
+inline constexpr std::size_t most_arrays = 4096;
 
 /// "acc", printable ASCII, whatever bytes the file has for a name.
-[[nodiscard]] std::string mat_name(std::string_view bytes);
+[[nodiscard]] std::string name_from(std::string_view bytes);
 
 /// True if the first bytes are those of a MAT file of version 4: it has no magic number, but a
 /// header that text cannot be.
@@ -60,7 +60,7 @@ inline constexpr std::size_t most_mat_arrays = 4096;
 /// Lists the contents of a file without reading the values.
 /// Source: The MathWorks, "MAT-File Format" (2019), chapter 1 (version 5) and 2 (version 4).
 /// Errors: corrupt (naming the byte), unsupported (version 4 of a VAX or Cray).
-[[nodiscard]] Result<MatCatalogue> list_mat4(std::string_view file);
-[[nodiscard]] Result<MatCatalogue> list_mat5(std::string_view file);
+[[nodiscard]] Result<Catalogue> list_mat4(std::string_view file);
+[[nodiscard]] Result<Catalogue> list_mat5(std::string_view file);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

@@ -11,27 +11,26 @@
 #include "proofmass/io/names.hpp"
 #include "proofmass/io/reading/channel_units.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 namespace {
 
-std::size_t size_of(const MatArray& array) {
+std::size_t size_of(const Array& array) {
   std::size_t size = 1;
   for (const std::size_t length : array.shape) size *= length;
   return size;
 }
 
 /// Contents of the file for the user, largest first: "acc (500 x 3 double), title (text), …".
-std::string contents(const MatCatalogue& catalogue, const std::set<const MatArray*>& but) {
+std::string contents(const Catalogue& catalogue, const std::set<const Array*>& but) {
   constexpr std::size_t most = 8;
-  std::vector<const MatArray*> arrays;
-  for (const MatArray& array : catalogue.arrays)
+  std::vector<const Array*> arrays;
+  for (const Array& array : catalogue.arrays)
     if (!but.contains(&array)) arrays.push_back(&array);
-  std::ranges::stable_sort(arrays, [](const MatArray* one, const MatArray* other) {
-    return size_of(*one) > size_of(*other);
-  });
+  std::ranges::stable_sort(
+      arrays, [](const Array* one, const Array* other) { return size_of(*one) > size_of(*other); });
   std::vector<std::string> items;
   items.reserve(arrays.size() + catalogue.skipped.size());
-  for (const MatArray* array : arrays)
+  for (const Array* array : arrays)
     items.push_back(fmt::format("{} ({})", array->path, array->description()));
   items.insert(items.end(), catalogue.skipped.begin(), catalogue.skipped.end());
   std::string text;
@@ -49,7 +48,7 @@ bool is_within(std::string_view path, std::string_view group) {
 }
 
 /// True if a channel has a table's name, optionally with the suffix of a column.
-bool is_channel_of(const std::string& channel, const MatTable& table) {
+bool is_channel_of(const std::string& channel, const Table& table) {
   const std::string wanted = lower(channel);
   const auto is_of = [&](const std::string& name) {
     if (wanted == name) return true;
@@ -61,9 +60,9 @@ bool is_channel_of(const std::string& channel, const MatTable& table) {
 
 class Chooser {
  public:
-  Chooser(const MatCatalogue& catalogue, const ReadOptions& options)
+  Chooser(const Catalogue& catalogue, const ReadOptions& options)
       : catalogue_(catalogue), options_(options) {
-    for (const MatArray& array : catalogue.arrays)
+    for (const Array& array : catalogue.arrays)
       if (const auto table = table_of(array)) tables_.push_back(*table);
   }
 
@@ -77,9 +76,9 @@ class Chooser {
     return add_time();
   }
 
-  Result<MatChoice> choice() {
-    MatChoice choice;
-    Result<std::vector<MatTable>> tables = chosen_tables(tables_, chosen_);
+  Result<Choice> choice() {
+    Choice choice;
+    Result<std::vector<Table>> tables = chosen_tables(tables_, chosen_);
     if (!tables) return tables.error();
     choice.tables = std::move(tables).value();
     choice.rate = rate_beside(choice.tables.front());
@@ -92,7 +91,7 @@ class Chooser {
   /// Selects the tables of the requested channels instead; false if there are none, or they are
   /// selected already.
   bool take_asked_for() {
-    std::set<const MatArray*> asked = arrays_asked_for(tables_, options_);
+    std::set<const Array*> asked = arrays_asked_for(tables_, options_);
     if (std::ranges::includes(chosen_, asked)) return false;
     chosen_ = std::move(asked);
     return true;
@@ -101,19 +100,19 @@ class Chooser {
   /// The largest table within a group, preferring accelerations, and the vectors beside it.
   Status take_largest(std::string_view group) {
     std::size_t longest = 0;
-    for (const MatTable& table : tables_)
+    for (const Table& table : tables_)
       if (is_within(table.array->path, group)) longest = std::max(longest, table.rows);
-    const auto rank = [&](const MatTable& table) {
+    const auto rank = [&](const Table& table) {
       return std::tuple(may_be_samples(table, longest), kind_of(table), table.figures());
     };
-    const MatTable* largest = nullptr;
-    for (const MatTable& table : tables_)
+    const Table* largest = nullptr;
+    for (const Table& table : tables_)
       if (is_within(table.array->path, group) &&
           (largest == nullptr || rank(table) > rank(*largest)))
         largest = &table;
     if (largest == nullptr) return Error{Errc::too_few_samples, nothing_there()};
     chosen_.insert(largest->array);
-    for (const MatTable* vector : vectors_beside(*largest)) chosen_.insert(vector->array);
+    for (const Table* vector : vectors_beside(*largest)) chosen_.insert(vector->array);
     return Done{};
   }
 
@@ -121,12 +120,12 @@ class Chooser {
     const std::string there = contents(catalogue_, {});
     if (there.empty()) return "holds no variable";
     return fmt::format("holds no table of samples (numbers, at most {} channels): it has {}",
-                       most_mat_channels, there);
+                       most_channels, there);
   }
 
   Status take_named(const std::string& name) {
-    const auto named = [&](const MatArray& array) { return array.path == name; };
-    const auto alike = [&](const MatArray& array) { return lower(array.path) == lower(name); };
+    const auto named = [&](const Array& array) { return array.path == name; };
+    const auto alike = [&](const Array& array) { return lower(array.path) == lower(name); };
     auto array = std::ranges::find_if(catalogue_.arrays, named);
     if (array == catalogue_.arrays.end()) array = std::ranges::find_if(catalogue_.arrays, alike);
     if (array != catalogue_.arrays.end()) {
@@ -134,7 +133,7 @@ class Chooser {
       if (table_of(*array)) return Done{};
       return Error{Errc::invalid_argument,
                    fmt::format("{} ({}) is not a table of samples, at most {} channels",
-                               array->path, array->description(), most_mat_channels)};
+                               array->path, array->description(), most_channels)};
     }
     if (!name.empty() && take_largest(name)) return Done{};
     return Error{Errc::invalid_argument,
@@ -144,21 +143,21 @@ class Chooser {
 
   /// Adds the time beside the named arrays.
   Status add_time() {
-    for (const MatTable& table : tables_) {
+    for (const Table& table : tables_) {
       if (!chosen_.contains(table.array)) continue;
       const auto vectors = vectors_beside(table);
       std::vector<std::string> names;
       names.reserve(vectors.size());
-      for (const MatTable* vector : vectors) names.push_back(vector->name());
+      for (const Table* vector : vectors) names.push_back(vector->name());
       if (const auto time = time_among(names, options_)) chosen_.insert(vectors[*time]->array);
       break;
     }
     return Done{};
   }
 
-  [[nodiscard]] std::vector<const MatTable*> vectors_beside(const MatTable& table) const {
-    std::vector<const MatTable*> vectors;
-    for (const MatTable& other : tables_)
+  [[nodiscard]] std::vector<const Table*> vectors_beside(const Table& table) const {
+    std::vector<const Table*> vectors;
+    for (const Table& other : tables_)
       if (other.width == 1 && other.rows == table.rows &&
           other.array->group() == table.array->group())
         vectors.push_back(&other);
@@ -166,30 +165,30 @@ class Chooser {
   }
 
   /// In the struct of the table, or an enclosing one.
-  [[nodiscard]] const MatArray* rate_beside(const MatTable& table) const {
-    for (const MatArray& array : catalogue_.arrays) {
+  [[nodiscard]] const Array* rate_beside(const Table& table) const {
+    for (const Array& array : catalogue_.arrays) {
       const bool is_number = !array.is_complex && std::ranges::all_of(array.shape, [](auto length) {
         return length == 1;
       });
       if (is_number && is_within(table.array->group(), array.group()) &&
-          is_rate_name(MatTable{&array}.name()))
+          is_rate_name(Table{&array}.name()))
         return &array;
     }
     return nullptr;
   }
 
-  [[nodiscard]] const MatArray* start_beside(const MatTable& table) const {
-    for (const MatArray& array : catalogue_.arrays)
+  [[nodiscard]] const Array* start_beside(const Table& table) const {
+    for (const Array& array : catalogue_.arrays)
       if (size_of(array) == 1 && array.class_name == "int64" &&
-          array.group() == table.array->group() && MatTable{&array}.name() == "start_ns")
+          array.group() == table.array->group() && Table{&array}.name() == "start_ns")
         return &array;
     return nullptr;
   }
 
-  void report(MatChoice& choice) const {
+  void report(Choice& choice) const {
     std::string read;
-    for (const MatTable& table : choice.tables) {
-      const MatArray& array = *table.array;
+    for (const Table& table : choice.tables) {
+      const Array& array = *table.array;
       read += fmt::format("{}{} ({})", read.empty() ? "" : ", ", array.path, array.description());
       if (table.is_turned && table.width > 1)
         choice.notes.push_back({Severity::info, array.path + " is channels x samples: turned"});
@@ -199,7 +198,7 @@ class Chooser {
     }
     choice.notes.insert(choice.notes.begin(),
                         {Severity::info, fmt::format("{}: {} read", catalogue_.version, read)});
-    std::set<const MatArray*> used(chosen_);
+    std::set<const Array*> used(chosen_);
     used.insert(choice.rate);
     used.insert(choice.start);
     if (const std::string others = contents(catalogue_, used); !others.empty())
@@ -209,23 +208,23 @@ class Chooser {
       choice.notes.push_back(
           {Severity::warning, fmt::format("of the arrays in the file only the first {} were "
                                           "looked at",
-                                          most_mat_arrays)});
+                                          most_arrays)});
   }
 
-  const MatCatalogue& catalogue_;
+  const Catalogue& catalogue_;
   const ReadOptions& options_;
-  std::vector<MatTable> tables_;
-  std::set<const MatArray*> chosen_;
+  std::vector<Table> tables_;
+  std::set<const Array*> chosen_;
 };
 
 }  // namespace
 
-Result<std::vector<MatTable>> chosen_tables(const std::vector<MatTable>& tables,
-                                            const std::set<const MatArray*>& chosen) {
-  std::vector<MatTable> found;
-  for (const MatTable& table : tables)
+Result<std::vector<Table>> chosen_tables(const std::vector<Table>& tables,
+                                         const std::set<const Array*>& chosen) {
+  std::vector<Table> found;
+  for (const Table& table : tables)
     if (chosen.contains(table.array)) found.push_back(table);
-  for (const MatTable& table : found)
+  for (const Table& table : found)
     if (table.rows != found.front().rows)
       return Error{Errc::invalid_argument,
                    fmt::format("{} has {} samples and {} {}: they do not belong together",
@@ -247,7 +246,7 @@ bool is_rate(double rate_hz) {
   return rate_hz > 0.01 && rate_hz < 1e7;
 }
 
-TableKind kind_of(const MatTable& table) {
+TableKind kind_of(const Table& table) {
   constexpr std::array<std::string_view, 11> others{
       "gyr", "omega", "ang", "mag", "euler", "quat", "vel", "pos", "temp", "orient", "baro"};
   const std::string name = bare_name(table.name());
@@ -260,23 +259,23 @@ TableKind kind_of(const MatTable& table) {
                                                                    : TableKind::unknown;
 }
 
-bool may_be_samples(const MatTable& table, std::size_t longest) {
+bool may_be_samples(const Table& table, std::size_t longest) {
   constexpr std::size_t fewest = 10, share = 20;
   return table.rows >= std::min(fewest, longest) && table.rows * share >= longest;
 }
 
-bool is_asked_for(const MatTable& table, const ReadOptions& options) {
+bool is_asked_for(const Table& table, const ReadOptions& options) {
   return std::ranges::any_of(
       options.channels, [&](const std::string& channel) { return is_channel_of(channel, table); });
 }
 
-std::set<const MatArray*> arrays_asked_for(const std::vector<MatTable>& tables,
-                                           const ReadOptions& options) {
-  std::set<const MatArray*> found;
+std::set<const Array*> arrays_asked_for(const std::vector<Table>& tables,
+                                        const ReadOptions& options) {
+  std::set<const Array*> found;
   std::set<std::size_t> lengths;
   for (const std::string& channel : options.channels) {
     bool any = false;
-    for (const MatTable& table : tables) {
+    for (const Table& table : tables) {
       if (!is_channel_of(channel, table)) continue;
       any = true;
       found.insert(table.array);
@@ -284,17 +283,17 @@ std::set<const MatArray*> arrays_asked_for(const std::vector<MatTable>& tables,
     }
     if (!any) return {};
   }
-  return lengths.size() == 1 ? found : std::set<const MatArray*>{};
+  return lengths.size() == 1 ? found : std::set<const Array*>{};
 }
 
-std::string MatTable::name() const {
+std::string Table::name() const {
   const std::string_view path = array->path;
   const std::size_t point = path.find_last_of("./");
   return std::string(point == std::string_view::npos ? path : path.substr(point + 1));
 }
 
-std::optional<MatTable> table_of(const MatArray& array) {
-  MatTable table{&array};
+std::optional<Table> table_of(const Array& array) {
+  Table table{&array};
   const std::size_t first = array.shape.front();
   const std::size_t last = array.shape.back();
   table.rows = std::max(first, last);
@@ -302,15 +301,15 @@ std::optional<MatTable> table_of(const MatArray& array) {
   if (table.rows < 2) return std::nullopt;
   table.width = size_of(array) / table.rows;
   const bool is_table =
-      table.width >= 1 && table.width <= most_mat_channels && table.width <= table.rows;
+      table.width >= 1 && table.width <= most_channels && table.width <= table.rows;
   if (!is_table) return std::nullopt;
   return table;
 }
 
-Result<MatChoice> choose_tables(const MatCatalogue& catalogue, const ReadOptions& options) {
+Result<Choice> choose_tables(const Catalogue& catalogue, const ReadOptions& options) {
   Chooser chooser(catalogue, options);
   if (const Status done = chooser.run(); !done) return done.error();
   return chooser.choice();
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

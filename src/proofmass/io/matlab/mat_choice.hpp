@@ -12,11 +12,11 @@
 #include "proofmass/io/matlab/mat_catalogue.hpp"
 #include "proofmass/io/read_recording.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 
 /// An array interpreted as a table of samples.
-struct MatTable {
-  const MatArray* array = nullptr;
+struct Table {
+  const Array* array = nullptr;
   std::size_t rows = 0;
   std::size_t width = 0;
   bool is_turned = false;  ///< was channels × samples
@@ -29,27 +29,27 @@ struct MatTable {
 /// Kind of a table according to its name, least preferred first: other kinds are angular rates,
 /// quaternions, angles, fields, positions and the like.
 enum class TableKind : unsigned char { other, unknown, acceleration };
-[[nodiscard]] TableKind kind_of(const MatTable& table);
+[[nodiscard]] TableKind kind_of(const Table& table);
 
 /// True if the table may be selected by default: long enough relative to the longest of the file to
 /// be its samples. A calibration matrix is not.
-[[nodiscard]] bool may_be_samples(const MatTable& table, std::size_t longest);
+[[nodiscard]] bool may_be_samples(const Table& table, std::size_t longest);
 
 /// True if one of the requested channels belongs to a table: it has the table's name, optionally
 /// with a suffix: "gyr", "gyr_x", "gyr 2".
-[[nodiscard]] bool is_asked_for(const MatTable& table, const ReadOptions& options);
+[[nodiscard]] bool is_asked_for(const Table& table, const ReadOptions& options);
 
 /// The arrays of the tables with the requested channels; none if a channel is in no table, or the
 /// tables differ in length.
-[[nodiscard]] std::set<const MatArray*> arrays_asked_for(const std::vector<MatTable>& tables,
-                                                         const ReadOptions& options);
+[[nodiscard]] std::set<const Array*> arrays_asked_for(const std::vector<Table>& tables,
+                                                      const ReadOptions& options);
 
 /// Maximum number of channels of one instrument.
-inline constexpr std::size_t most_mat_channels = 64;
+inline constexpr std::size_t most_channels = 64;
 
 /// Time runs along the longer of the first and the last dimension; nullopt if that is shorter than
 /// 2, or the others give more than 64 channels or more channels than samples.
-[[nodiscard]] std::optional<MatTable> table_of(const MatArray& array);
+[[nodiscard]] std::optional<Table> table_of(const Array& array);
 
 /// True if a scalar of that name is a sample rate in Hz: "fs", "SamplingRate".
 [[nodiscard]] bool is_rate_name(std::string_view name);
@@ -58,15 +58,15 @@ inline constexpr std::size_t most_mat_channels = 64;
 
 /// The tables whose array was selected, in their order.
 /// Errors: invalid_argument if they differ in length.
-[[nodiscard]] Result<std::vector<MatTable>> chosen_tables(const std::vector<MatTable>& tables,
-                                                          const std::set<const MatArray*>& chosen);
+[[nodiscard]] Result<std::vector<Table>> chosen_tables(const std::vector<Table>& tables,
+                                                       const std::set<const Array*>& chosen);
 
 /// The arrays that form the recording.
-struct MatChoice {
-  std::vector<MatTable> tables;     ///< of equal length, in the order of the file
-  const MatArray* rate = nullptr;   ///< a scalar named "fs" or similar
-  const MatArray* start = nullptr;  ///< an int64 named "start_ns": the clock's time at time 0
-  std::vector<Note> notes;          ///< the selection and the alternatives
+struct Choice {
+  std::vector<Table> tables;     ///< of equal length, in the order of the file
+  const Array* rate = nullptr;   ///< a scalar named "fs" or similar
+  const Array* start = nullptr;  ///< an int64 named "start_ns": the clock's time at time 0
+  std::vector<Note> notes;       ///< the selection and the alternatives
 };
 
 /// Selects the largest table, with the vectors of its length beside it; or those named by the user:
@@ -74,7 +74,6 @@ struct MatChoice {
 /// outlive the choice.
 /// Errors: too_few_samples (no table), invalid_argument (no variable of a requested name; tables of
 /// different length).
-[[nodiscard]] Result<MatChoice> choose_tables(const MatCatalogue& catalogue,
-                                              const ReadOptions& options);
+[[nodiscard]] Result<Choice> choose_tables(const Catalogue& catalogue, const ReadOptions& options);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

@@ -3,7 +3,7 @@
 #include "proofmass/io/matlab/mat_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io::mat_choice_test {
+namespace proofmass::io::matlab::mat_choice_test {
 namespace {
 
 using namespace specimen;
@@ -46,7 +46,7 @@ ReadOptions chosen(std::vector<std::string> variables) {
   return options;
 }
 
-TEST(MatChoice, AMatrixAloneIsReadLikeATableWithoutAHeader) {
+TEST(Choice, AMatrixAloneIsReadLikeATableWithoutAHeader) {
   const auto timed = read_mat5(doubles("data", samples, joined({time_s, axes})));
   EXPECT_EQ(names_of(timed), (Names{"x", "y", "z"}));
   EXPECT_NEAR(timed->time.rate_hz, 100.0, 1e-6);
@@ -58,7 +58,7 @@ TEST(MatChoice, AMatrixAloneIsReadLikeATableWithoutAHeader) {
   EXPECT_EQ(names_of(four), (Names{"column 1", "column 2", "column 3", "column 4"}));
 }
 
-TEST(MatChoice, AMatrixOfAnotherKindKeepsItsName) {
+TEST(Choice, AMatrixOfAnotherKindKeepsItsName) {
   EXPECT_EQ(names_of(read_mat5(doubles("gyro", samples, axes))),
             (Names{"gyro_x", "gyro_y", "gyro_z"}));
   const auto timed = read_mat5(doubles("Omega", samples, joined({time_s, axes})));
@@ -66,7 +66,7 @@ TEST(MatChoice, AMatrixOfAnotherKindKeepsItsName) {
   EXPECT_NEAR(timed->time.rate_hz, 100.0, 1e-6);
 }
 
-TEST(MatChoice, VectorsOfEqualLengthAreJoinedUnderTheirNames) {
+TEST(Choice, VectorsOfEqualLengthAreJoinedUnderTheirNames) {
   const auto read =
       read_mat5(time_vector + doubles("ax_g", samples, values(0, 0.01)) +
                 doubles("other", 9, values(1, 1, 9, 9)) + doubles("ay_g", 1, values(1, 0.01)));
@@ -78,7 +78,7 @@ TEST(MatChoice, VectorsOfEqualLengthAreJoinedUnderTheirNames) {
   EXPECT_TRUE(is_noted(*read, "also in the file: other (9 x 1 double)")) << notes_of(*read);
 }
 
-TEST(MatChoice, TheLargestMatrixIsJoinedWithTheVectorsBesideIt) {
+TEST(Choice, TheLargestMatrixIsJoinedWithTheVectorsBesideIt) {
   const auto read =
       read_mat5(doubles("cal", 3, values(1, 1, 9, 9)) + time_vector +
                 doubles("acc", samples, axes) + doubles("temp", samples, values(20, 1)));
@@ -86,7 +86,7 @@ TEST(MatChoice, TheLargestMatrixIsJoinedWithTheVectorsBesideIt) {
   EXPECT_EQ(read->time.channel, "t");
 }
 
-TEST(MatChoice, ChannelsTimesSamplesAreTurned) {
+TEST(Choice, ChannelsTimesSamplesAreTurned) {
   Values turned;
   for (std::size_t k = 0; k < samples; ++k)
     for (std::size_t c = 0; c < 3; ++c) turned.push_back(axes[c * samples + k]);
@@ -100,7 +100,7 @@ TEST(MatChoice, ChannelsTimesSamplesAreTurned) {
   EXPECT_EQ(cube->channels[2].values, values(9.7, 0.01));
 }
 
-TEST(MatChoice, ASingleNumberMayBeTheRate) {
+TEST(Choice, ASingleNumberMayBeTheRate) {
   const std::string inner = structure("", {{"acc", doubles("", samples, axes)}});
   const auto read = read_mat5(structure("run", {{"Fs", doubles("", 1, {250})}, {"imu", inner}}));
   ASSERT_TRUE(read.has_value());
@@ -111,7 +111,7 @@ TEST(MatChoice, ASingleNumberMayBeTheRate) {
   EXPECT_TRUE(is_noted(*mad, "fs: is not a possible rate")) << notes_of(*mad);
 }
 
-TEST(MatChoice, TheUserChoosesByName) {
+TEST(Choice, TheUserChoosesByName) {
   const std::string file = time_vector + doubles("acc", samples, axes) +
                            doubles("gyr", samples, axes) + doubles("temp", samples, values(20, 1));
   EXPECT_EQ(names_of(read_mat5(file, chosen({"gyr"}))), (Names{"gyr_x", "gyr_y", "gyr_z"}));
@@ -121,7 +121,7 @@ TEST(MatChoice, TheUserChoosesByName) {
   EXPECT_EQ(names_of(read_mat5(file, chosen({"temp"}))), (Names{"temp"}));
 }
 
-TEST(MatChoice, AStructIsChosenByItsName) {
+TEST(Choice, AStructIsChosenByItsName) {
   const std::string file =
       structure("left", {{"t", time_vector}, {"acc", doubles("", samples, axes)}}) +
       structure("right", {{"ax", doubles("", 8, values(1, 1, 8, 8))},
@@ -131,7 +131,7 @@ TEST(MatChoice, AStructIsChosenByItsName) {
   EXPECT_EQ(names_of(read_mat5(file, chosen({"right.ay"}))), (Names{"ay"}));
 }
 
-TEST(MatChoice, SaysWhatThereIsWhereItCannotChoose) {
+TEST(Choice, SaysWhatThereIsWhereItCannotChoose) {
   const auto none = read_mat5(doubles("gain", 1, {2}));
   ASSERT_FALSE(none.has_value());
   EXPECT_EQ(none.error().code, Errc::too_few_samples);
@@ -148,13 +148,13 @@ TEST(MatChoice, SaysWhatThereIsWhereItCannotChoose) {
             Errc::invalid_argument);
 }
 
-TEST(MatChoice, OtherFormatsHaveNoVariables) {
+TEST(Choice, OtherFormatsHaveNoVariables) {
   const auto read = read_text("a,b\n1,2\n3,4\n", chosen({"a"}));
   ASSERT_FALSE(read.has_value());
   EXPECT_EQ(read.error().code, Errc::invalid_argument);
 }
 
-TEST(MatChoice, PutsAccelerationsBeforeLargerTablesOfOtherThings) {
+TEST(Choice, PutsAccelerationsBeforeLargerTablesOfOtherThings) {
   const std::string quaternions =
       doubles("quat", samples, joined({axes, values(1, 1), values(1, 2), values(1, 3)}));
   const std::string matrix =
@@ -172,7 +172,7 @@ TEST(MatChoice, PutsAccelerationsBeforeLargerTablesOfOtherThings) {
   EXPECT_EQ(read->samples(), 200u);
 }
 
-TEST(MatChoice, FindsTheVariableOfAChannelThatIsAskedFor) {
+TEST(Choice, FindsTheVariableOfAChannelThatIsAskedFor) {
   const std::string file = time_vector + doubles("acc", samples, axes) +
                            doubles("gyr", samples, axes) + doubles("temp", samples, values(20, 1));
   const auto asked = [&](std::vector<std::string> channels) {
@@ -192,4 +192,4 @@ TEST(MatChoice, FindsTheVariableOfAChannelThatIsAskedFor) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::mat_choice_test
+}  // namespace proofmass::io::matlab::mat_choice_test

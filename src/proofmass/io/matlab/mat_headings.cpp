@@ -9,7 +9,7 @@
 #include "proofmass/io/arrays/recording.hpp"
 #include "proofmass/io/shown_text.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 namespace {
 
 using Columns = std::vector<std::vector<double>>;
@@ -32,17 +32,17 @@ std::vector<std::string> headings_of(std::string_view prefix, std::size_t width,
 
 }  // namespace
 
-std::vector<std::string> headings_of(const std::vector<MatTable>& tables,
+std::vector<std::string> headings_of(const std::vector<Table>& tables,
                                      const std::vector<Columns>& values,
                                      const ReadOptions& options) {
-  const auto is_matrix = [](const MatTable& table) { return table.width > 1; };
+  const auto is_matrix = [](const Table& table) { return table.width > 1; };
   const auto matrices = std::ranges::count_if(tables, is_matrix);
-  const auto is_named = [&](const MatTable& table) {
+  const auto is_named = [&](const Table& table) {
     return kind_of(table) == TableKind::other || is_asked_for(table, options);
   };
   if (tables.size() == 1 && matrices == 1 && !is_named(tables[0])) return {};
   std::vector<std::string> vectors;
-  for (const MatTable& table : tables)
+  for (const Table& table : tables)
     if (!is_matrix(table)) vectors.push_back(table.name());
   bool is_timed = time_among(vectors, options).has_value();
   std::vector<std::string> headings;
@@ -61,17 +61,17 @@ std::vector<std::string> headings_of(const std::vector<MatTable>& tables,
   return headings;
 }
 
-void note_headings(const MatCatalogue& catalogue,
-                   const std::vector<MatTable>& tables,
+void note_headings(const Catalogue& catalogue,
+                   const std::vector<Table>& tables,
                    std::vector<std::string>& headings) {
   std::map<std::string_view, std::string_view> texts;
-  for (const MatText& text : catalogue.texts) texts.emplace(text.path, text.text);
+  for (const Text& text : catalogue.texts) texts.emplace(text.path, text.text);
   const auto sibling = [&](std::string_view about, const std::string& path) {
     const auto found = texts.find(fmt::format("{}.{}", about, path));
     return found == texts.end() ? std::string{} : shown(found->second);
   };
   std::size_t column = 0;
-  for (const MatTable& table : tables) {
+  for (const Table& table : tables) {
     const std::size_t at = column;
     column += table.width;
     if (table.width > 1 || at >= headings.size()) continue;
@@ -82,4 +82,4 @@ void note_headings(const MatCatalogue& catalogue,
   }
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

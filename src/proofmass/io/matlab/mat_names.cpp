@@ -6,7 +6,7 @@
 
 #include "proofmass/io/names.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 namespace {
 
 constexpr std::size_t longest_name = 63;
@@ -40,7 +40,7 @@ std::string legal(std::string_view text) {
 
 }  // namespace
 
-std::string MatNames::name_for(std::string_view text) {
+std::string Names::name_for(std::string_view text) {
   const std::string wish = legal(text);
   std::string name = wish;
   for (std::size_t k = 2; !taken_.insert(lower(name)).second; ++k) {
@@ -50,4 +50,4 @@ std::string MatNames::name_for(std::string_view text) {
   return name;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

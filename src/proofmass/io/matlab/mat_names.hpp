@@ -4,11 +4,11 @@
 #include <string>
 #include <string_view>
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 
 /// Makes valid MATLAB names of variables and fields: a letter, then letters, digits and
 /// underscores, at most 63, no keywords, unique ignoring case.
-class MatNames {
+class Names {
  public:
   [[nodiscard]] std::string name_for(std::string_view text);
 
@@ -16,4 +16,4 @@ class MatNames {
   std::set<std::string> taken_;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

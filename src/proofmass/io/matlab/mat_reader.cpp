@@ -12,7 +12,7 @@
 #include "proofmass/io/matlab/mat_choice.hpp"
 #include "proofmass/io/matlab/mat_headings.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 namespace {
 
 Result<std::string> read_all(PeekSource& source, const Progress& progress) {
@@ -43,7 +43,7 @@ class FigureReader {
   explicit FigureReader(std::string_view file) : file_(file) {}
 
   /// An integer of eight bytes, exact.
-  Result<std::int64_t> read_whole(const MatArray& array) {
+  Result<std::int64_t> read_whole(const Array& array) {
     std::array<char, 8> bytes{};
     if (const Status found = go_to(array); !found) return found.error();
     if (const Status read = stream_->read(bytes); !read) return read.error();
@@ -52,7 +52,7 @@ class FigureReader {
     return std::bit_cast<std::int64_t>(bytes);
   }
 
-  Result<Columns> read(const MatTable& table) {
+  Result<Columns> read(const Table& table) {
     Columns columns(table.width);
     for (auto& column : columns) column.reserve(table.rows);
     const FigureType& type = table.array->stored;
@@ -76,21 +76,21 @@ class FigureReader {
  private:
   static constexpr std::size_t piece_figures = std::size_t{1} << 15;
 
-  Status go_to(const MatArray& array) {
+  Status go_to(const Array& array) {
     const bool goes_on =
         stream_ && region_offset_ == array.region.offset && stream_->position() <= array.begin;
-    if (!goes_on) stream_ = std::make_unique<MatStream>(file_, array.region);
+    if (!goes_on) stream_ = std::make_unique<Stream>(file_, array.region);
     region_offset_ = array.region.offset;
     return stream_->skip(array.begin - stream_->position());
   }
 
   std::string_view file_;
-  std::unique_ptr<MatStream> stream_;
+  std::unique_ptr<Stream> stream_;
   std::size_t region_offset_ = 0;
 };
 
 /// The rate in a scalar; a note if it is implausible.
-Result<std::optional<double>> rate_of(const MatArray& array,
+Result<std::optional<double>> rate_of(const Array& array,
                                       FigureReader& reader,
                                       std::vector<Note>& notes) {
   const auto figure = reader.read({&array, 1, 1, false});
@@ -104,12 +104,12 @@ Result<std::optional<double>> rate_of(const MatArray& array,
 
 }  // namespace
 
-bool claims_mat(std::string_view head, std::string_view) {
+bool claims(std::string_view head, std::string_view) {
   return is_mat5(head) || is_mat4(head);
 }
 
-Result<std::unique_ptr<TableFile>> open_mat(std::unique_ptr<PeekSource> source,
-                                            const ReadOptions& options) {
+Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
+                                        const ReadOptions& options) {
   const auto file = read_all(*source, options.progress);
   if (!file) return file.error();
   const auto catalogue = is_mat5(*file) ? list_mat5(*file) : list_mat4(*file);
@@ -122,7 +122,7 @@ Result<std::unique_ptr<TableFile>> open_mat(std::unique_ptr<PeekSource> source,
   std::ranges::move(source->notes(), std::back_inserter(recording.notes));
   FigureReader reader(*file);
   std::vector<Columns> values;
-  for (const MatTable& table : choice->tables) {
+  for (const Table& table : choice->tables) {
     auto columns = reader.read(table);
     if (!columns) return columns.error();
     values.push_back(std::move(columns).value());
@@ -146,4 +146,4 @@ Result<std::unique_ptr<TableFile>> open_mat(std::unique_ptr<PeekSource> source,
   return only_table(std::move(made).value());
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

@@ -7,10 +7,10 @@
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/io/table_file.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 
 /// True if a file is MAT of version 4, or 5 to 7, by its first bytes.
-[[nodiscard]] bool claims_mat(std::string_view head, std::string_view file_name);
+[[nodiscard]] bool claims(std::string_view head, std::string_view file_name);
 
 /// MATLAB's files of versions 4 to 7. Reads the largest numeric array that is a table of samples,
 /// including those inside structs and cells, with the vectors of its length beside it; or those
@@ -21,7 +21,7 @@ namespace proofmass::io {
 /// invalid_argument.
 /// Cost: the file's bytes in memory besides the columns; compressed variables are decompressed
 /// twice.
-[[nodiscard]] Result<std::unique_ptr<TableFile>> open_mat(std::unique_ptr<PeekSource> source,
-                                                          const ReadOptions& options);
+[[nodiscard]] Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
+                                                      const ReadOptions& options);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

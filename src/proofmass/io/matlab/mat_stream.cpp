@@ -8,9 +8,9 @@
 
 #include "proofmass/core/contract.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 
-struct MatStream::Inflater {
+struct Stream::Inflater {
   explicit Inflater(std::string_view packed) : rest(packed) {
     PM_EXPECTS(inflateInit(&stream) == Z_OK);
   }
@@ -49,15 +49,15 @@ struct MatStream::Inflater {
   bool complete = false;  ///< ended with a valid checksum
 };
 
-MatStream::MatStream(std::string_view file, const MatRegion& region)
+Stream::Stream(std::string_view file, const Region& region)
     : bytes_(file.substr(region.offset, region.size)), region_(region) {
   PM_EXPECTS(bytes_.size() == region.size);
   if (region.is_packed) inflater_ = std::make_unique<Inflater>(bytes_);
 }
 
-MatStream::~MatStream() = default;
+Stream::~Stream() = default;
 
-Status MatStream::read(std::span<char> into) {
+Status Stream::read(std::span<char> into) {
   std::size_t count = 0;
   if (inflater_) {
     count = inflater_->read(into);
@@ -73,7 +73,7 @@ Status MatStream::read(std::span<char> into) {
                                 : "the variable breaks off");
 }
 
-Status MatStream::skip(std::uint64_t count) {
+Status Stream::skip(std::uint64_t count) {
   if (!inflater_ && count <= bytes_.size() - position_) {
     position_ += count;
     return Done{};
@@ -88,7 +88,7 @@ Status MatStream::skip(std::uint64_t count) {
   return Done{};
 }
 
-Status MatStream::finish() {
+Status Stream::finish() {
   if (!inflater_) return Done{};
   std::array<char, 1> beyond;
   inflater_->read(beyond);
@@ -96,16 +96,16 @@ Status MatStream::finish() {
   return corrupt(position_, "the variable's compressed data are damaged, or continue after it");
 }
 
-std::uint64_t MatStream::most() const {
+std::uint64_t Stream::most() const {
   // Source: zlib's technical details, "Maximum Compression Factor": 1032 to 1.
   return inflater_ ? std::uint64_t{bytes_.size()} * 1032 + 64 : bytes_.size();
 }
 
-Error MatStream::corrupt(std::uint64_t position, std::string_view what) const {
+Error Stream::corrupt(std::uint64_t position, std::string_view what) const {
   if (!inflater_)
     return {Errc::corrupt, fmt::format("byte {}: {}", region_.offset + position, what)};
   return {Errc::corrupt,
           fmt::format("byte {}, unpacked byte {}: {}", region_.offset, position, what)};
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

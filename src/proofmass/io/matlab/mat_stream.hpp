@@ -9,23 +9,23 @@
 
 #include "proofmass/core/result.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 
 /// Location of a variable in a MAT file.
-struct MatRegion {
+struct Region {
   std::size_t offset = 0;
   std::size_t size = 0;
   bool is_packed = false;  ///< by zlib; else uncompressed
 };
 
 /// The bytes of one variable, sequentially, decompressed on demand.
-class MatStream {
+class Stream {
  public:
   /// `file` must outlive the stream. Precondition: the region lies within it.
-  MatStream(std::string_view file, const MatRegion& region);
-  MatStream(const MatStream&) = delete;
-  MatStream& operator=(const MatStream&) = delete;
-  ~MatStream();
+  Stream(std::string_view file, const Region& region);
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+  ~Stream();
 
   /// Fills all of `into`. Errors: corrupt (premature end, or cannot be decompressed).
   Status read(std::span<char> into);
@@ -44,9 +44,9 @@ class MatStream {
   struct Inflater;
 
   std::string_view bytes_;
-  MatRegion region_;
+  Region region_;
   std::uint64_t position_ = 0;
   std::unique_ptr<Inflater> inflater_;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

@@ -5,7 +5,7 @@
 #include "proofmass/io/matlab/mat_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io::mat_test {
+namespace proofmass::io::matlab::mat_test {
 namespace {
 
 using namespace specimen;
@@ -272,4 +272,4 @@ TEST(Mat4, IsNotTakenForTextOrTheOtherWayRound) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::mat_test
+}  // namespace proofmass::io::matlab::mat_test

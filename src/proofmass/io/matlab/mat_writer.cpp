@@ -10,7 +10,7 @@
 #include "proofmass/io/reading/recording_writers.hpp"
 #include "proofmass/io/time/row_times.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::matlab {
 namespace {
 
 /// Names of variables that describe the others.
@@ -21,15 +21,15 @@ constexpr std::string_view names_name = "names";
 constexpr std::string_view units_name = "units";
 constexpr std::string_view origin_name = "proofmass";
 
-class MatWriter final : public RecordingWriter {
+class Writer final : public RecordingWriter {
  public:
-  MatWriter(std::unique_ptr<OutputFile> file, const Recording& head, const WriteOptions& options)
+  Writer(std::unique_ptr<OutputFile> file, const Recording& head, const WriteOptions& options)
       : file_(std::move(file)),
         times_(head.time),
         options_(options),
         row_(head.channels.size() + (times_.is_timed() ? 1 : 0)),
         spool_(row_.size(), file_->part_path()) {
-    MatNames names;
+    Names names;
     for (const std::string_view own :
          {time_name, rate_name, start_name, names_name, units_name, origin_name})
       static_cast<void>(names.name_for(own));
@@ -85,7 +85,7 @@ class MatWriter final : public RecordingWriter {
 
   /// Source of the recording, and the sensor file applied.
   [[nodiscard]] std::string origin() const {
-    MatNames names;
+    Names names;
     std::vector<Mat5Text> texts;
     texts.reserve(options_.metadata.size() + 1);
     for (const auto& [key, value] : options_.metadata)
@@ -107,11 +107,11 @@ class MatWriter final : public RecordingWriter {
 
 }  // namespace
 
-Result<std::unique_ptr<RecordingWriter>> mat_writer(std::unique_ptr<OutputFile> file,
-                                                    const WriterHead& head,
-                                                    const WriteOptions& options) {
+Result<std::unique_ptr<RecordingWriter>> create(std::unique_ptr<OutputFile> file,
+                                                const WriterHead& head,
+                                                const WriteOptions& options) {
   return std::unique_ptr<RecordingWriter>(
-      std::make_unique<MatWriter>(std::move(file), head.recording, options));
+      std::make_unique<Writer>(std::move(file), head.recording, options));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::matlab

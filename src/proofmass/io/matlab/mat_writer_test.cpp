@@ -17,20 +17,20 @@
 #include "proofmass/io/write_recording.hpp"
 #include "proofmass/io/written_test_support.hpp"
 
-namespace proofmass::io::mat_writer_test {
+namespace proofmass::io::matlab::mat_writer_test {
 namespace {
 
 /// A temporary folder, removed after the test.
-class MatWriter : public testing::Test {
+class Writer : public testing::Test {
  protected:
-  MatWriter() {
+  Writer() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     folder_ =
         std::filesystem::temp_directory_path() / ("proofmass_mat_" + std::string(test->name()));
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directory(folder_);
   }
-  ~MatWriter() override { std::filesystem::remove_all(folder_); }
+  ~Writer() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
   Result<Recording> through(const Recording& recording) const {
@@ -55,7 +55,7 @@ Recording uniform(std::size_t samples, double rate_hz) {
   return recording;
 }
 
-TEST_F(MatWriter, KeepsEveryBitNamesUnitsAndTimes) {
+TEST_F(Writer, KeepsEveryBitNamesUnitsAndTimes) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> jitter(0.0, 0.004);
   for (const auto start_ns :
@@ -82,7 +82,7 @@ TEST_F(MatWriter, KeepsEveryBitNamesUnitsAndTimes) {
   }
 }
 
-TEST_F(MatWriter, AUniformBaseStaysUniform) {
+TEST_F(Writer, AUniformBaseStaysUniform) {
   for (const double rate_hz : {200.0, 120.005, 204.8, 100.0 / 3.0}) {
     Recording recording = uniform(500, rate_hz);
     recording.time.start_ns = 1'705'479'286'000'000'123;
@@ -94,7 +94,7 @@ TEST_F(MatWriter, AUniformBaseStaysUniform) {
   }
 }
 
-TEST_F(MatWriter, NeedsNoTime) {
+TEST_F(Writer, NeedsNoTime) {
   Recording recording = uniform(9, 100.0);
   recording.time = {};
   const auto back = through(recording);
@@ -103,7 +103,7 @@ TEST_F(MatWriter, NeedsNoTime) {
   expect_same_recording(recording, *back);
 }
 
-TEST_F(MatWriter, ColumnsOfAnyLengthComeBackFromTheSpool) {
+TEST_F(Writer, ColumnsOfAnyLengthComeBackFromTheSpool) {
   constexpr std::size_t columns = 3000;
   constexpr std::size_t rows = 1000;
   ColumnSpool spool(columns, path("a.mat.part"));
@@ -130,7 +130,7 @@ TEST_F(MatWriter, ColumnsOfAnyLengthComeBackFromTheSpool) {
   EXPECT_TRUE(std::filesystem::is_empty(std::filesystem::path(path("x")).parent_path()));
 }
 
-TEST_F(MatWriter, TellsWhereARecordingIsTooLarge) {
+TEST_F(Writer, TellsWhereARecordingIsTooLarge) {
   struct Nowhere final : OutputFile {
     Status append(std::string_view) override { return Done{}; }
     Status overwrite(std::uint64_t, std::string_view) override { return Done{}; }
@@ -140,7 +140,7 @@ TEST_F(MatWriter, TellsWhereARecordingIsTooLarge) {
     std::string path_ = "a.mat.part";
   };
   const Recording head = uniform(0, 100.0);
-  auto writer = mat_writer(std::make_unique<Nowhere>(), {.recording = head}, {});
+  auto writer = create(std::make_unique<Nowhere>(), {.recording = head}, {});
   ASSERT_TRUE(writer.has_value());
   // The values of a rejected block are not read.
   const double figure = 0.0;
@@ -153,8 +153,8 @@ TEST_F(MatWriter, TellsWhereARecordingIsTooLarge) {
   EXPECT_NE(refused.error().message.find("write .h5"), std::string::npos);
 }
 
-TEST(MatNames, AreWhatMatlabTakes) {
-  MatNames names;
+TEST(Names, AreWhatMatlabTakes) {
+  Names names;
   EXPECT_EQ(names.name_for("acc_x"), "acc_x");
   EXPECT_EQ(names.name_for("Acc X"), "Acc_X_2");
   EXPECT_EQ(names.name_for("acc-x"), "acc_x_3");
@@ -177,4 +177,4 @@ TEST(PlainTextMatrix, CalledMatIsReadAsATable) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::mat_writer_test
+}  // namespace proofmass::io::matlab::mat_writer_test

@@ -7,30 +7,28 @@
 #include "proofmass/io/bytes/crc32.hpp"
 #include "proofmass/io/mcap/put.hpp"
 
-namespace proofmass::io {
-McapBuilder::McapBuilder(const std::string& library,
-                         McapChunking chunking,
-                         const std::string& profile)
-    : chunking_(chunking), bytes_(mcap_magic) {
+namespace proofmass::io::mcap {
+Builder::Builder(const std::string& library, Chunking chunking, const std::string& profile)
+    : chunking_(chunking), bytes_(magic) {
   std::string content;
-  put_mcap_text(content, profile);
-  put_mcap_text(content, library);
-  record(bytes_, McapOp::header, content);
+  put_text(content, profile);
+  put_text(content, library);
+  record(bytes_, Op::header, content);
 }
 
-void McapBuilder::record(std::string& out, McapOp op, std::string_view content) {
+void Builder::record(std::string& out, Op op, std::string_view content) {
   put_record_head(out, op, content.size());
   out += content;
 }
 
-std::uint16_t McapBuilder::add_schema(McapSchema schema) {
+std::uint16_t Builder::add_schema(Schema schema) {
   PM_EXPECTS(schemas_.size() < 0xFFFF);
   schema.id = static_cast<std::uint16_t>(schemas_.size() + 1);
   schemas_.push_back(std::move(schema));
   return schemas_.back().id;
 }
 
-std::uint16_t McapBuilder::add_channel(McapChannel channel) {
+std::uint16_t Builder::add_channel(ChannelRecord channel) {
   PM_EXPECTS(channels_.size() < 0xFFFF);
   channel.id = static_cast<std::uint16_t>(channels_.size() + 1);
   channels_.push_back(std::move(channel));
@@ -38,19 +36,19 @@ std::uint16_t McapBuilder::add_channel(McapChannel channel) {
   return channels_.back().id;
 }
 
-void McapBuilder::put_definitions() {
+void Builder::put_definitions() {
   for (; schemas_put_ < schemas_.size(); ++schemas_put_)
-    record(chunk_, McapOp::schema, content_of(schemas_[schemas_put_]));
+    record(chunk_, Op::schema, content_of(schemas_[schemas_put_]));
   for (; channels_put_ < channels_.size(); ++channels_put_)
-    record(chunk_, McapOp::channel, content_of(channels_[channels_put_]));
+    record(chunk_, Op::channel, content_of(channels_[channels_put_]));
 }
 
-void McapBuilder::add_message(std::uint16_t channel, std::uint64_t log_ns, std::string_view data) {
+void Builder::add_message(std::uint16_t channel, std::uint64_t log_ns, std::string_view data) {
   PM_EXPECTS(channel > 0 && channel <= channels_.size());
   add_message({channel, sequences_[channel - 1u], log_ns, log_ns, data});
 }
 
-void McapBuilder::add_message(const McapMessage& message) {
+void Builder::add_message(const Message& message) {
   PM_EXPECTS(message.channel > 0 && message.channel <= channels_.size());
   if (chunking_.is_self_contained && chunk_.empty()) schemas_put_ = channels_put_ = 0;
   put_definitions();
@@ -59,7 +57,7 @@ void McapBuilder::add_message(const McapMessage& message) {
   chunk_start_ns_ = is_first ? log_ns : std::min(chunk_start_ns_, log_ns);
   chunk_end_ns_ = is_first ? log_ns : std::max(chunk_end_ns_, log_ns);
   chunk_entries_[message.channel].push_back({log_ns, chunk_.size()});
-  put_record_head(chunk_, McapOp::message, 2 + 4 + 8 + 8 + message.data.size());
+  put_record_head(chunk_, Op::message, 2 + 4 + 8 + 8 + message.data.size());
   put_number(chunk_, message.channel, 2);
   put_number(chunk_, message.sequence, 4);
   put_number(chunk_, log_ns, 8);
@@ -73,7 +71,7 @@ void McapBuilder::add_message(const McapMessage& message) {
     close_chunk();
 }
 
-void McapBuilder::close_chunk() {
+void Builder::close_chunk() {
   if (chunk_.empty()) return;
   write_chunk();
   chunk_.clear();
@@ -82,15 +80,15 @@ void McapBuilder::close_chunk() {
   chunk_end_ns_ = 0;
 }
 
-void McapBuilder::write_chunk() {
+void Builder::write_chunk() {
   ++chunks_;
   const std::uint64_t start = position();
-  put_record_head(bytes_, McapOp::chunk, 8 + 8 + 8 + 4 + 4 + 8 + chunk_.size());
+  put_record_head(bytes_, Op::chunk, 8 + 8 + 8 + 4 + 4 + 8 + chunk_.size());
   put_number(bytes_, chunk_start_ns_, 8);
   put_number(bytes_, chunk_end_ns_, 8);
   put_number(bytes_, chunk_.size(), 8);
   put_number(bytes_, crc32(0, chunk_), 4);
-  put_mcap_text(bytes_, "");
+  put_text(bytes_, "");
   put_number(bytes_, chunk_.size(), 8);
   bytes_ += chunk_;
   std::string index;
@@ -99,14 +97,14 @@ void McapBuilder::write_chunk() {
   put_number(index, start, 8);
   put_number(index, position() - start, 8);
   write_indexes(index);
-  put_mcap_text(index, "");
+  put_text(index, "");
   put_number(index, chunk_.size(), 8);
   put_number(index, chunk_.size(), 8);
-  record(chunk_indexes_, McapOp::chunk_index, index);
+  record(chunk_indexes_, Op::chunk_index, index);
 }
 
 /// Writes message indexes after the chunk, and their positions into the chunk's index.
-void McapBuilder::write_indexes(std::string& index) {
+void Builder::write_indexes(std::string& index) {
   const std::uint64_t start = position();
   put_number(index, chunk_entries_.size() * (2 + 8), 4);
   for (const auto& [channel, entries] : chunk_entries_) {
@@ -119,57 +117,57 @@ void McapBuilder::write_indexes(std::string& index) {
       put_number(content, entry.log_ns, 8);
       put_number(content, entry.offset, 8);
     }
-    record(bytes_, McapOp::message_index, content);
+    record(bytes_, Op::message_index, content);
   }
   put_number(index, position() - start, 8);
 }
 
-void McapBuilder::add_metadata(const McapMetadata& metadata) {
+void Builder::add_metadata(const Metadata& metadata) {
   close_chunk();
   ++metadata_;
   const std::uint64_t start = position();
   std::string content;
-  put_mcap_text(content, metadata.name);
-  put_mcap_map(content, metadata.values);
-  record(bytes_, McapOp::metadata, content);
+  put_text(content, metadata.name);
+  put_map(content, metadata.values);
+  record(bytes_, Op::metadata, content);
   std::string index;
   put_number(index, start, 8);
   put_number(index, position() - start, 8);
-  put_mcap_text(index, metadata.name);
-  record(metadata_indexes_, McapOp::metadata_index, index);
+  put_text(index, metadata.name);
+  record(metadata_indexes_, Op::metadata_index, index);
 }
 
-void McapBuilder::add_attachment(const McapAttachmentHead& head, std::string_view data) {
+void Builder::add_attachment(const AttachmentHead& head, std::string_view data) {
   close_chunk();
   ++attachments_;
   const std::uint64_t start = position();
   std::string content;
   put_number(content, head.log_ns, 8);
   put_number(content, head.create_ns, 8);
-  put_mcap_text(content, head.name);
-  put_mcap_text(content, head.media_type);
+  put_text(content, head.name);
+  put_text(content, head.media_type);
   put_number(content, data.size(), 8);
   content += data;
   put_number(content, crc32(0, content), 4);
-  record(bytes_, McapOp::attachment, content);
+  record(bytes_, Op::attachment, content);
   std::string index;
   put_number(index, start, 8);
   put_number(index, position() - start, 8);
   put_number(index, head.log_ns, 8);
   put_number(index, head.create_ns, 8);
   put_number(index, data.size(), 8);
-  put_mcap_text(index, head.name);
-  put_mcap_text(index, head.media_type);
-  record(attachment_indexes_, McapOp::attachment_index, index);
+  put_text(index, head.name);
+  put_text(index, head.media_type);
+  record(attachment_indexes_, Op::attachment_index, index);
 }
 
-std::string McapBuilder::take_bytes() {
+std::string Builder::take_bytes() {
   data_crc_ = crc32(data_crc_, bytes_);
   taken_ += bytes_.size();
   return std::exchange(bytes_, {});
 }
 
-McapMark McapBuilder::mark() const {
+Mark Builder::mark() const {
   PM_EXPECTS(bytes_.empty() && chunk_.empty());
   return {taken_,
           data_crc_,
@@ -185,7 +183,7 @@ McapMark McapBuilder::mark() const {
           sequences_};
 }
 
-void McapBuilder::rewind(const McapMark& mark) {
+void Builder::rewind(const Mark& mark) {
   bytes_.clear();
   chunk_.clear();
   chunk_entries_.clear();
@@ -205,16 +203,16 @@ void McapBuilder::rewind(const McapMark& mark) {
   schemas_put_ = channels_put_ = 0;
 }
 
-void McapBuilder::finish() {
+void Builder::finish() {
   put_definitions();
   close_chunk();
   std::string content;
   put_number(content, crc32(data_crc_, bytes_), 4);
-  record(bytes_, McapOp::data_end, content);
+  record(bytes_, Op::data_end, content);
   write_summary();
 }
 
-std::string McapBuilder::statistics() const {
+std::string Builder::statistics() const {
   std::string out;
   put_number(out, messages_, 8);
   put_number(out, schemas_.size(), 2);
@@ -225,47 +223,46 @@ std::string McapBuilder::statistics() const {
   put_number(out, start_ns_, 8);
   put_number(out, end_ns_, 8);
   put_number(out, channels_.size() * (2 + 8), 4);
-  for (const McapChannel& channel : channels_) {
+  for (const ChannelRecord& channel : channels_) {
     put_number(out, channel.id, 2);
     put_number(out, sequences_[channel.id - 1u], 8);
   }
   return out;
 }
 
-void McapBuilder::summary_group(McapOp op, std::string_view records, std::string& offsets) {
+void Builder::summary_group(Op op, std::string_view records, std::string& offsets) {
   if (records.empty()) return;
   std::string content;
   put_number(content, static_cast<std::uint64_t>(op), 1);
   put_number(content, position(), 8);
   put_number(content, records.size(), 8);
-  record(offsets, McapOp::summary_offset, content);
+  record(offsets, Op::summary_offset, content);
   bytes_ += records;
 }
 
-void McapBuilder::write_summary() {
+void Builder::write_summary() {
   const std::uint64_t start = position();
   const std::size_t start_here = bytes_.size();
   std::string schemas;
-  for (const McapSchema& schema : schemas_) record(schemas, McapOp::schema, content_of(schema));
+  for (const Schema& schema : schemas_) record(schemas, Op::schema, content_of(schema));
   std::string channels;
-  for (const McapChannel& channel : channels_)
-    record(channels, McapOp::channel, content_of(channel));
+  for (const ChannelRecord& channel : channels_) record(channels, Op::channel, content_of(channel));
   std::string counted;
-  record(counted, McapOp::statistics, statistics());
+  record(counted, Op::statistics, statistics());
   std::string offsets;
-  summary_group(McapOp::schema, schemas, offsets);
-  summary_group(McapOp::channel, channels, offsets);
-  summary_group(McapOp::chunk_index, chunk_indexes_, offsets);
-  summary_group(McapOp::attachment_index, attachment_indexes_, offsets);
-  summary_group(McapOp::metadata_index, metadata_indexes_, offsets);
-  summary_group(McapOp::statistics, counted, offsets);
+  summary_group(Op::schema, schemas, offsets);
+  summary_group(Op::channel, channels, offsets);
+  summary_group(Op::chunk_index, chunk_indexes_, offsets);
+  summary_group(Op::attachment_index, attachment_indexes_, offsets);
+  summary_group(Op::metadata_index, metadata_indexes_, offsets);
+  summary_group(Op::statistics, counted, offsets);
   const std::uint64_t offsets_start = position();
   bytes_ += offsets;
-  put_record_head(bytes_, McapOp::footer, mcap_footer_bytes);
+  put_record_head(bytes_, Op::footer, footer_bytes);
   put_number(bytes_, start, 8);
   put_number(bytes_, offsets_start, 8);
   put_number(bytes_, crc32(0, std::string_view(bytes_).substr(start_here)), 4);
-  bytes_ += mcap_magic;
+  bytes_ += magic;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

@@ -10,28 +10,28 @@
 #include "proofmass/io/mcap/recording.hpp"
 #include "proofmass/io/mcap/records.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
 /// Builds an MCAP file in memory, sequentially; the user takes the bytes and writes them. Chunks
 /// are uncompressed, so that a file truncated anywhere opens up to its last whole chunk. Each chunk
 /// has its checksum and message indexes; the end has a summary with schemas, channels, chunk,
 /// attachment and metadata indexes and statistics.
-class McapBuilder {
+class Builder {
  public:
-  explicit McapBuilder(const std::string& library,
-                       McapChunking chunking = {},
-                       const std::string& profile = "");
+  explicit Builder(const std::string& library,
+                   Chunking chunking = {},
+                   const std::string& profile = "");
 
   /// Both are written before the first message that needs them. Numbers count from 1.
-  [[nodiscard]] std::uint16_t add_schema(McapSchema schema);
-  [[nodiscard]] std::uint16_t add_channel(McapChannel channel);
+  [[nodiscard]] std::uint16_t add_schema(Schema schema);
+  [[nodiscard]] std::uint16_t add_channel(ChannelRecord channel);
   /// Messages of a channel are numbered from 0.
   void add_message(std::uint16_t channel, std::uint64_t log_ns, std::string_view data);
   /// The same with a given sequence number and publish time.
-  void add_message(const McapMessage& message);
+  void add_message(const Message& message);
   /// Both close the preceding chunk.
-  void add_metadata(const McapMetadata& metadata);
-  void add_attachment(const McapAttachmentHead& head, std::string_view data);
+  void add_metadata(const Metadata& metadata);
+  void add_attachment(const AttachmentHead& head, std::string_view data);
   /// Completes the open chunk: the data added so far can be taken and survive a crash.
   void close_chunk();
   /// Writes the end of the data and the summary. Nothing can be added afterwards.
@@ -41,29 +41,29 @@ class McapBuilder {
   [[nodiscard]] std::string take_bytes();
   /// Size of the file, including the open chunk.
   [[nodiscard]] std::uint64_t bytes() const { return position() + chunk_.size(); }
-  [[nodiscard]] McapMark mark() const;
-  void rewind(const McapMark& mark);
+  [[nodiscard]] Mark mark() const;
+  void rewind(const Mark& mark);
 
  private:
   struct Entry {
     std::uint64_t log_ns;
     std::uint64_t offset;
   };
-  void record(std::string& out, McapOp op, std::string_view content);
+  void record(std::string& out, Op op, std::string_view content);
   void put_definitions();
   [[nodiscard]] std::uint64_t position() const { return taken_ + bytes_.size(); }
   void write_chunk();
   void write_indexes(std::string& index);
   void write_summary();
-  void summary_group(McapOp op, std::string_view records, std::string& offsets);
+  void summary_group(Op op, std::string_view records, std::string& offsets);
   [[nodiscard]] std::string statistics() const;
 
-  McapChunking chunking_;
+  Chunking chunking_;
   std::string bytes_;
   std::uint64_t taken_ = 0;     ///< bytes returned so far
   std::uint32_t data_crc_ = 0;  ///< checksum of those bytes
-  std::vector<McapSchema> schemas_;
-  std::vector<McapChannel> channels_;
+  std::vector<Schema> schemas_;
+  std::vector<ChannelRecord> channels_;
   std::size_t schemas_put_ = 0;
   std::size_t channels_put_ = 0;
   std::vector<std::uint32_t> sequences_;  ///< number of messages of each channel
@@ -84,4 +84,4 @@ class McapBuilder {
   std::uint64_t messages_ = 0;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

@@ -5,29 +5,29 @@
 
 #include "proofmass/io/mcap/summary.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
 /// Fills a catalogue from as many records as needed.
 class Cataloguer {
  public:
-  Cataloguer(McapCatalogue& out, bool counts) : out_(out), counts_(counts) {
+  Cataloguer(Catalogue& out, bool counts) : out_(out), counts_(counts) {
     for (const auto& [channel, messages] : out.messages)
       if (messages > 0) missing_.insert(channel);
   }
 
   [[nodiscard]] bool is_complete() const { return !counts_ && missing_.empty(); }
 
-  void take(const McapRecord& record) {
-    if (record.op == McapOp::header) {
-      McapFields fields(record.content);
+  void take(const Record& record) {
+    if (record.op == Op::header) {
+      Fields fields(record.content);
       out_.profile = fields.text();
       out_.library = fields.text();
-    } else if (record.op == McapOp::schema) {
+    } else if (record.op == Op::schema) {
       take_schema(record.content);
-    } else if (record.op == McapOp::channel) {
+    } else if (record.op == Op::channel) {
       take_channel(record.content);
-    } else if (record.op == McapOp::message) {
+    } else if (record.op == Op::message) {
       take_message(record.content);
     }
   }
@@ -41,20 +41,20 @@ class Cataloguer {
   }
 
   void take_schema(std::string_view content) {
-    auto schema = mcap_schema(content);
+    auto schema = parse_schema(content);
     if (schema && schema->id != 0 && !out_.schemas.contains(schema->id) &&
         has_room_for(content.size()))
       out_.schemas.emplace(schema->id, std::move(*schema));
   }
 
   void take_channel(std::string_view content) {
-    auto channel = mcap_channel(content);
+    auto channel = parse_channel(content);
     if (channel && !out_.channels.contains(channel->id) && has_room_for(content.size()))
       out_.channels.emplace(channel->id, std::move(*channel));
   }
 
   void take_message(std::string_view content) {
-    const auto message = mcap_message(content);
+    const auto message = parse_message(content);
     if (!message || !out_.channels.contains(message->channel)) return;
     missing_.erase(message->channel);
     if (counts_) ++out_.messages[message->channel];
@@ -63,10 +63,10 @@ class Cataloguer {
     const std::string_view data = message->data.substr(0, longest);
     out_.firsts.emplace(
         message->channel,
-        McapFirstMessage{message->log_ns, has_room_for(data.size()) ? std::string(data) : ""});
+        FirstMessage{message->log_ns, has_room_for(data.size()) ? std::string(data) : ""});
   }
 
-  McapCatalogue& out_;
+  Catalogue& out_;
   bool counts_;
   std::set<std::uint16_t> missing_;  ///< channels whose first message has not been read yet
   std::size_t kept_ = 0;
@@ -74,20 +74,20 @@ class Cataloguer {
 
 }  // namespace
 
-Result<McapCatalogue> read_mcap_catalogue(std::shared_ptr<const RandomBytes> bytes) {
-  McapCatalogue out;
+Result<Catalogue> read_catalogue(std::shared_ptr<const RandomBytes> bytes) {
+  Catalogue out;
   FileWindow window(bytes);
-  auto summary = read_mcap_summary(window, out.notes);
+  auto summary = read_summary(window, out.notes);
   if (!summary) return summary.error();
   if (*summary) {
-    McapSummary found = **summary;
+    Summary found = **summary;
     out.messages = std::move(found.messages);
     out.hints.chunk_starts = std::move(found.chunk_starts);
     out.hints.check_data = found.has_data_checksum;
   }
   Cataloguer cataloguer(out, !*summary);
-  McapWalk walk(bytes, {out.hints.chunk_starts, false});
-  McapRecord record;
+  Walk walk(bytes, {out.hints.chunk_starts, false});
+  Record record;
   while (!cataloguer.is_complete()) {
     const auto found = walk.next(record);
     if (!found) return found.error();
@@ -98,4 +98,4 @@ Result<McapCatalogue> read_mcap_catalogue(std::shared_ptr<const RandomBytes> byt
   return out;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

@@ -12,22 +12,22 @@
 #include "proofmass/io/mcap/records.hpp"
 #include "proofmass/io/table_reader.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
 /// Converts the messages of one topic to rows of numbers. Interface of the encodings.
-class McapDecoder {
+class Decoder {
  public:
-  McapDecoder() = default;
-  McapDecoder(const McapDecoder&) = delete;
-  McapDecoder& operator=(const McapDecoder&) = delete;
-  virtual ~McapDecoder() = default;
+  Decoder() = default;
+  Decoder(const Decoder&) = delete;
+  Decoder& operator=(const Decoder&) = delete;
+  virtual ~Decoder() = default;
 
   /// Without rows.
   [[nodiscard]] virtual const TableHead& head() const = 0;
   /// Inspects the next message and returns its number of rows; its bytes must stay unchanged until
   /// the next call. `lost_bytes` of earlier messages have been skipped so far.
   /// Errors: corrupt, for this message only.
-  [[nodiscard]] virtual Result<std::size_t> take(const McapMessage& message,
+  [[nodiscard]] virtual Result<std::size_t> take(const Message& message,
                                                  std::uint64_t lost_bytes) = 0;
   /// Copies `count` of these rows, from `first` on, into the columns, starting at row `at` of each.
   virtual void copy(std::size_t first,
@@ -39,20 +39,20 @@ class McapDecoder {
 };
 
 /// All information of a file on a topic.
-struct McapTopic {
-  McapChannel channel;
-  McapSchema schema;       ///< empty if there is none
-  McapFirstMessage first;  ///< the topic's first message
+struct Topic {
+  ChannelRecord channel;
+  Schema schema;       ///< empty if there is none
+  FirstMessage first;  ///< the topic's first message
 };
 
 /// Selects the decoder by encoding. Errors: unsupported (an encoding or schema), corrupt.
-[[nodiscard]] Result<std::unique_ptr<McapDecoder>> mcap_decoder(const McapTopic& topic);
+[[nodiscard]] Result<std::unique_ptr<Decoder>> decoder_of(const Topic& topic);
 
 /// Blocks of samples, in the layout of mcap/samples.hpp.
-[[nodiscard]] Result<std::unique_ptr<McapDecoder>> mcap_samples_decoder(const McapTopic& topic);
+[[nodiscard]] Result<std::unique_ptr<Decoder>> samples_decoder(const Topic& topic);
 /// ROS messages, of version 2 ("cdr") and 1 ("ros1"): the numbers of all fields that occur once.
-[[nodiscard]] Result<std::unique_ptr<McapDecoder>> mcap_ros_decoder(const McapTopic& topic);
+[[nodiscard]] Result<std::unique_ptr<Decoder>> ros_decoder(const Topic& topic);
 /// JSON: the numbers of the first message.
-[[nodiscard]] Result<std::unique_ptr<McapDecoder>> mcap_json_decoder(const McapTopic& topic);
+[[nodiscard]] Result<std::unique_ptr<Decoder>> json_decoder(const Topic& topic);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

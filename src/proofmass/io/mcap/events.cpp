@@ -6,9 +6,9 @@
 #include "proofmass/io/json_leaves.hpp"
 #include "proofmass/io/shown_text.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
-void McapEvents::add(const McapMessage& message) {
+void Events::add(const Message& message) {
   std::string kind, text;
   double rows = 0.0, time_s = 0.0;
   const Status visited = visit_json(message.data, [&](const JsonLeaf& leaf) {
@@ -25,7 +25,7 @@ void McapEvents::add(const McapMessage& message) {
   known.rows += rows;
 }
 
-std::optional<Note> McapEvents::note() const {
+std::optional<Note> Events::note() const {
   if (kinds_.empty()) return std::nullopt;
   std::string words;
   for (const auto& [name, kind] : kinds_) {
@@ -36,4 +36,4 @@ std::optional<Note> McapEvents::note() const {
               fmt::format("events while it was recorded: {}; the first at {}", words, first_)};
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

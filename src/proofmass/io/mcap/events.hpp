@@ -8,13 +8,13 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/io/mcap/records.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
 /// Summary of the topic "events" of a recording, in one note.
-class McapEvents {
+class Events {
  public:
   /// Messages that are not events are skipped.
-  void add(const McapMessage& message);
+  void add(const Message& message);
   [[nodiscard]] std::optional<Note> note() const;
 
  private:
@@ -26,4 +26,4 @@ class McapEvents {
   std::string first_;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

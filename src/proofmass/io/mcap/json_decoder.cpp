@@ -11,7 +11,7 @@
 #include "proofmass/io/messages/units.hpp"
 #include "proofmass/io/shown_text.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
 constexpr std::size_t longest_path = 256;
@@ -110,9 +110,9 @@ std::string common_heading(const std::vector<std::string>& paths,
   return unit.empty() ? name : fmt::format("{} ({})", name, unit);
 }
 
-class JsonDecoder final : public McapDecoder {
+class JsonDecoder final : public Decoder {
  public:
-  JsonDecoder(const JsonLayout& layout, const McapTopic& topic)
+  JsonDecoder(const JsonLayout& layout, const Topic& topic)
       : row_(layout.paths.size()),
         clock_(layout.stamp.ns(), topic.first.log_ns, layout.stamp_name) {
     head_.format = "MCAP";
@@ -136,7 +136,7 @@ class JsonDecoder final : public McapDecoder {
 
   [[nodiscard]] const TableHead& head() const override { return head_; }
 
-  [[nodiscard]] Result<std::size_t> take(const McapMessage& message, std::uint64_t) override {
+  [[nodiscard]] Result<std::size_t> take(const Message& message, std::uint64_t) override {
     std::ranges::fill(row_, no_value);
     StampParts stamp;
     const Status visited = visit_json(message.data, [&](const JsonLeaf& leaf) {
@@ -186,10 +186,10 @@ class JsonDecoder final : public McapDecoder {
 
 }  // namespace
 
-Result<std::unique_ptr<McapDecoder>> mcap_json_decoder(const McapTopic& topic) {
+Result<std::unique_ptr<Decoder>> json_decoder(const Topic& topic) {
   const auto layout = layout_of(topic.first.data);
   if (!layout) return layout.error();
-  return std::unique_ptr<McapDecoder>(std::make_unique<JsonDecoder>(*layout, topic));
+  return std::unique_ptr<Decoder>(std::make_unique<JsonDecoder>(*layout, topic));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

@@ -7,7 +7,7 @@
 
 #include "proofmass/io/cell.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
 std::string quoted(std::string text) {
@@ -90,4 +90,4 @@ std::unique_ptr<RecordingReader> with_labels(std::unique_ptr<RecordingReader> re
   return std::make_unique<LabelledReader>(std::move(reader), std::move(table));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

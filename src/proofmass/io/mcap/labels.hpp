@@ -7,11 +7,11 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/io/reading/recording_reader.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
 /// The attachment with a recording's labels: a text table, "first,last,NAME", with samples from 0
 /// and NAME the text column of their origin.
-inline constexpr std::string_view mcap_labels_name = "labels.csv";
+inline constexpr std::string_view labels_name = "labels.csv";
 
 [[nodiscard]] std::string labels_table(const Recording& recording);
 /// Adds the labels of such a table to a recording of `samples`; labels beyond the end, or out of
@@ -22,4 +22,4 @@ void add_labels(std::string_view table, std::size_t samples, Recording& recordin
 [[nodiscard]] std::unique_ptr<RecordingReader> with_labels(std::unique_ptr<RecordingReader> reader,
                                                            std::shared_ptr<std::string> table);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

@@ -3,7 +3,7 @@
 #include "proofmass/io/mcap/specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io::mcap_test {
+namespace proofmass::io::mcap::mcap_test {
 namespace {
 
 using namespace specimen;
@@ -234,4 +234,4 @@ TEST(Mcap, IsReadOrRefusedWhereverItIsBrokenOff) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::mcap_test
+}  // namespace proofmass::io::mcap::mcap_test

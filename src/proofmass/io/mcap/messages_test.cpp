@@ -8,7 +8,7 @@
 #include "proofmass/io/messages/cdr_specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io::mcap_messages_test {
+namespace proofmass::io::mcap::messages_test {
 namespace {
 
 using namespace specimen;
@@ -180,4 +180,4 @@ TEST(McapJson, RefusesWhatIsNoJson) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::mcap_messages_test
+}  // namespace proofmass::io::mcap::messages_test

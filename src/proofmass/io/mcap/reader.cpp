@@ -17,26 +17,26 @@
 #include "proofmass/io/reading/recording_reader.hpp"
 #include "proofmass/io/shown_text.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
-McapSchema schema_of(const McapCatalogue& catalogue, const McapChannel& channel) {
+Schema schema_of(const Catalogue& catalogue, const ChannelRecord& channel) {
   const auto found = catalogue.schemas.find(channel.schema);
-  return found == catalogue.schemas.end() ? McapSchema{} : found->second;
+  return found == catalogue.schemas.end() ? Schema{} : found->second;
 }
 
-std::uint64_t messages_of(const McapCatalogue& catalogue, std::uint16_t channel) {
+std::uint64_t messages_of(const Catalogue& catalogue, std::uint16_t channel) {
   const auto found = catalogue.messages.find(channel);
   return found == catalogue.messages.end() ? 0 : found->second;
 }
 
 /// Rows of a topic, if the file can hold that many.
-std::optional<std::uint64_t> rows_of(const McapTopic& topic,
+std::optional<std::uint64_t> rows_of(const Topic& topic,
                                      std::uint64_t messages,
                                      std::uint64_t file_bytes) {
   if (messages == 0) return std::nullopt;
   std::uint64_t a_message = 1;
-  if (topic.channel.encoding == mcap_samples_encoding) {
+  if (topic.channel.encoding == samples_encoding) {
     const auto block = read_samples_head(topic.first.data);
     if (!block) return std::nullopt;
     a_message = block->rows;
@@ -50,17 +50,17 @@ std::optional<std::uint64_t> rows_of(const McapTopic& topic,
 
 /// The topics of a file, and the reasons why others are not read.
 struct Topics {
-  std::vector<McapTableSpec> read;
+  std::vector<TableSpec> read;
   std::set<std::uint16_t> events;
   std::vector<Note> others;
 };
 
 /// The metadata topics of our own recordings are not tables.
-bool is_beside(const McapTopic& topic) {
-  return topic.schema.name == mcap_event_schema || topic.schema.name == mcap_clock_schema;
+bool is_beside(const Topic& topic) {
+  return topic.schema.name == event_schema || topic.schema.name == clock_schema;
 }
 
-Topics topics_of(const McapCatalogue& catalogue, std::uint64_t file_bytes) {
+Topics topics_of(const Catalogue& catalogue, std::uint64_t file_bytes) {
   Topics out;
   // Several publishers of a topic have separate channels.
   std::map<std::tuple<std::string, std::string, std::string>, std::size_t> known;
@@ -68,9 +68,9 @@ Topics topics_of(const McapCatalogue& catalogue, std::uint64_t file_bytes) {
   constexpr std::size_t most_topics = 1024;
   std::size_t too_many = 0;
   for (const auto& [id, first] : catalogue.firsts) {
-    const McapChannel& channel = catalogue.channels.at(id);
-    McapTopic topic{channel, schema_of(catalogue, channel), first};
-    if (topic.schema.name == mcap_event_schema) out.events.insert(id);
+    const ChannelRecord& channel = catalogue.channels.at(id);
+    Topic topic{channel, schema_of(catalogue, channel), first};
+    if (topic.schema.name == event_schema) out.events.insert(id);
     if (is_beside(topic)) continue;
     const auto key = std::tuple(channel.topic, channel.encoding, topic.schema.data);
     const auto [place, is_new] = known.try_emplace(key, out.read.size());
@@ -87,10 +87,10 @@ Topics topics_of(const McapCatalogue& catalogue, std::uint64_t file_bytes) {
     out.read[place->second].channels.insert(id);
     messages[place->second] += messages_of(catalogue, id);
   }
-  std::vector<McapTableSpec> kept;
+  std::vector<TableSpec> kept;
   for (std::size_t i = 0; i < out.read.size(); ++i) {
-    McapTableSpec& spec = out.read[i];
-    const auto decoder = mcap_decoder(spec.topic);
+    TableSpec& spec = out.read[i];
+    const auto decoder = decoder_of(spec.topic);
     if (!decoder) {
       constexpr std::size_t most_listed = 8;
       if (out.others.size() < most_listed)
@@ -101,7 +101,7 @@ Topics topics_of(const McapCatalogue& catalogue, std::uint64_t file_bytes) {
       continue;
     }
     spec.rows = rows_of(spec.topic, messages[i], file_bytes);
-    spec.rows_are_guessed = messages[i] > 1 && spec.topic.channel.encoding == mcap_samples_encoding;
+    spec.rows_are_guessed = messages[i] > 1 && spec.topic.channel.encoding == samples_encoding;
     kept.push_back(std::move(spec));
   }
   out.read = std::move(kept);
@@ -112,50 +112,48 @@ Topics topics_of(const McapCatalogue& catalogue, std::uint64_t file_bytes) {
   return out;
 }
 
-TableSummary summary_of(const McapTableSpec& spec) {
-  const McapMap& metadata = spec.topic.channel.metadata;
+TableSummary summary_of(const TableSpec& spec) {
+  const Map& metadata = spec.topic.channel.metadata;
   TableSummary out{.name = spec.topic.channel.topic,
                    .headings = {},
                    .rows = spec.rows,
                    .rate_hz = std::nullopt,
                    .rows_are_guessed = spec.rows_are_guessed,
                    .is_derived = metadata.contains("derived_from")};
-  if (const auto decoder = mcap_decoder(spec.topic)) {
+  if (const auto decoder = decoder_of(spec.topic)) {
     out.headings = (*decoder)->head().headings;
     out.rate_hz = (*decoder)->head().rate_hz;
   }
   return out;
 }
 
-class McapFile final : public TableFile {
+class File final : public TableFile {
  public:
-  McapFile(std::shared_ptr<const RandomBytes> bytes,
-           std::vector<McapTableSpec> specs,
-           McapWalkHints hints)
+  File(std::shared_ptr<const RandomBytes> bytes, std::vector<TableSpec> specs, WalkHints hints)
       : bytes_(std::move(bytes)), specs_(std::move(specs)), hints_(std::move(hints)) {
-    for (const McapTableSpec& spec : specs_) tables_.push_back(summary_of(spec));
+    for (const TableSpec& spec : specs_) tables_.push_back(summary_of(spec));
   }
 
   [[nodiscard]] std::span<const TableSummary> tables() const override { return tables_; }
   [[nodiscard]] Result<std::unique_ptr<RecordingReader>> open(std::size_t table,
                                                               const ReadOptions& options) override {
-    McapTableSpec spec = specs_[table];
+    TableSpec spec = specs_[table];
     spec.labels = std::make_shared<std::string>();
-    auto reader = mcap_table(bytes_, spec, hints_);
+    auto reader = open_table(bytes_, spec, hints_);
     if (!reader) return reader.error();
     auto recording = recording_reader_of(std::move(reader).value(), options);
-    if (!recording || spec.topic.channel.encoding != mcap_samples_encoding) return recording;
+    if (!recording || spec.topic.channel.encoding != samples_encoding) return recording;
     return with_labels(std::move(recording).value(), spec.labels);
   }
 
  private:
   std::shared_ptr<const RandomBytes> bytes_;
-  std::vector<McapTableSpec> specs_;
-  McapWalkHints hints_;
+  std::vector<TableSpec> specs_;
+  WalkHints hints_;
   std::vector<TableSummary> tables_;
 };
 
-Error nothing_read(const McapCatalogue& catalogue, const std::vector<Note>& others) {
+Error nothing_read(const Catalogue& catalogue, const std::vector<Note>& others) {
   if (!catalogue.damage.empty())
     return {Errc::corrupt, catalogue.damage.front().text + "; no message is before it"};
   if (!others.empty())
@@ -164,7 +162,7 @@ Error nothing_read(const McapCatalogue& catalogue, const std::vector<Note>& othe
   return {Errc::too_few_samples, "is an MCAP file without a message"};
 }
 
-std::string writer_of(const McapCatalogue& catalogue) {
+std::string writer_of(const Catalogue& catalogue) {
   std::string words = fmt::format(
       "written by {}", catalogue.library.empty() ? "an unnamed program" : shown(catalogue.library));
   if (!catalogue.profile.empty()) words += fmt::format(", profile {}", shown(catalogue.profile));
@@ -173,26 +171,26 @@ std::string writer_of(const McapCatalogue& catalogue) {
 
 }  // namespace
 
-bool claims_mcap(std::string_view head, std::string_view) {
-  return head.starts_with(mcap_magic.substr(0, 5));
+bool claims(std::string_view head, std::string_view) {
+  return head.starts_with(magic.substr(0, 5));
 }
 
-Result<std::unique_ptr<TableFile>> open_mcap(std::unique_ptr<PeekSource> source,
-                                             const ReadOptions& options) {
-  const auto magic = source->peek(mcap_magic.size());
-  if (!magic) return magic.error();
-  if (*magic != mcap_magic)
+Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
+                                        const ReadOptions& options) {
+  const auto head = source->peek(magic.size());
+  if (!head) return head.error();
+  if (*head != magic)
     return Error{Errc::corrupt, "byte 5: not version 0 of MCAP, or its first line is damaged"};
   auto opened = random_bytes_of(std::move(source), options.progress);
   if (!opened) return opened.error();
   const std::shared_ptr<const RandomBytes> bytes = std::move(opened).value();
-  const auto catalogue = read_mcap_catalogue(bytes);
+  const auto catalogue = read_catalogue(bytes);
   if (!catalogue) return catalogue.error();
   Topics topics = topics_of(*catalogue, bytes->size());
   if (topics.read.empty()) return nothing_read(*catalogue, topics.others);
   const auto known = std::make_shared<std::set<std::uint16_t>>();
   for (const auto& [channel, first] : catalogue->firsts) known->insert(channel);
-  for (McapTableSpec& spec : topics.read) {
+  for (TableSpec& spec : topics.read) {
     spec.known = known;
     spec.events = topics.events;
     spec.notes = catalogue->notes;
@@ -205,7 +203,7 @@ Result<std::unique_ptr<TableFile>> open_mcap(std::unique_ptr<PeekSource> source,
                                        shown(spec.topic.channel.topic), spec.channels.size())});
   }
   return std::unique_ptr<TableFile>(
-      std::make_unique<McapFile>(bytes, std::move(topics.read), catalogue->hints));
+      std::make_unique<File>(bytes, std::move(topics.read), catalogue->hints));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

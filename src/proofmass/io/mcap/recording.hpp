@@ -13,10 +13,10 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/view.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
 /// How the messages of an MCAP file are grouped into chunks.
-struct McapChunking {
+struct Chunking {
   /// A chunk is closed as soon as it reaches this size or its messages span this time.
   std::size_t bytes = std::size_t{1} << 20;
   std::uint64_t span_ns = ~std::uint64_t{0};
@@ -25,7 +25,7 @@ struct McapChunking {
 };
 
 /// The state of a file at the end of a chunk, to which it can be rewound.
-struct McapMark {
+struct Mark {
   std::uint64_t bytes = 0;  ///< size of the file so far
   std::uint32_t data_crc = 0;
   std::size_t chunk_index_bytes = 0, attachment_index_bytes = 0, metadata_index_bytes = 0;
@@ -35,7 +35,7 @@ struct McapMark {
 };
 
 /// A topic with blocks of samples.
-struct McapSamplesTopic {
+struct SamplesTopic {
   std::string name;                     ///< "recording"
   const std::vector<Channel>& columns;  ///< names and units; values are ignored
   bool has_stamps = true;
@@ -45,20 +45,20 @@ struct McapSamplesTopic {
 };
 
 /// Time of a sample as the log time of a message, which cannot be negative.
-[[nodiscard]] std::uint64_t mcap_log_ns(std::int64_t start_ns, double since_s);
+[[nodiscard]] std::uint64_t log_time_ns(std::int64_t start_ns, double since_s);
 
 /// Writes our own recordings as an MCAP file, sequentially, into bytes that the caller stores. See
 /// docs/formats.md.
-class McapRecording {
+class RecordingEncoder {
  public:
   using Topic = std::uint16_t;
 
-  explicit McapRecording(McapChunking chunking = {});
-  McapRecording(McapRecording&&) noexcept;
-  McapRecording& operator=(McapRecording&&) noexcept;
-  ~McapRecording();
+  explicit RecordingEncoder(Chunking chunking = {});
+  RecordingEncoder(RecordingEncoder&&) noexcept;
+  RecordingEncoder& operator=(RecordingEncoder&&) noexcept;
+  ~RecordingEncoder();
 
-  [[nodiscard]] Topic add_samples_topic(const McapSamplesTopic& topic);
+  [[nodiscard]] Topic add_samples_topic(const SamplesTopic& topic);
   /// Messages are JSON. Readers identify the topic by the schema's name.
   [[nodiscard]] Topic add_json_topic(const std::string& name, const std::string& schema_name);
   /// A block whose first row has the number `first`; stamps are empty if the topic has none.
@@ -84,9 +84,9 @@ class McapRecording {
   [[nodiscard]] std::string take_bytes();
   [[nodiscard]] std::uint64_t bytes() const;  ///< taken, pending and in the open chunk
   /// State after the bytes taken; no others may be pending.
-  [[nodiscard]] McapMark mark() const;
+  [[nodiscard]] Mark mark() const;
   /// Rewinds to the mark: everything after it was not written.
-  void rewind(const McapMark& mark);
+  void rewind(const Mark& mark);
 
  private:
   struct State;
@@ -94,7 +94,7 @@ class McapRecording {
 };
 
 /// Schema names of the data stored beside the samples; readers do not present them as tables.
-inline constexpr std::string_view mcap_event_schema = "proofmass.event";
-inline constexpr std::string_view mcap_clock_schema = "proofmass.clock";
+inline constexpr std::string_view event_schema = "proofmass.event";
+inline constexpr std::string_view clock_schema = "proofmass.clock";
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

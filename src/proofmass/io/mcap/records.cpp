@@ -6,9 +6,9 @@
 
 #include "proofmass/io/bytes/crc32.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
-std::string_view McapFields::take(std::uint64_t count) {
+std::string_view Fields::take(std::uint64_t count) {
   if (count > bytes_.size()) {
     is_whole_ = false;
     bytes_ = {};
@@ -19,7 +19,7 @@ std::string_view McapFields::take(std::uint64_t count) {
   return taken;
 }
 
-std::uint64_t McapFields::number(std::size_t count) {
+std::uint64_t Fields::number(std::size_t count) {
   const std::string_view taken = take(count);
   std::uint64_t value = 0;
   for (std::size_t i = taken.size(); i-- > 0;)
@@ -27,9 +27,9 @@ std::uint64_t McapFields::number(std::size_t count) {
   return value;
 }
 
-McapMap McapFields::map() {
-  McapFields entries(text());
-  McapMap out;
+Map Fields::map() {
+  Fields entries(text());
+  Map out;
   while (entries.left() > 0) {
     const std::string_view key = entries.text();
     const std::string_view value = entries.text();
@@ -45,15 +45,15 @@ McapMap McapFields::map() {
 namespace {
 
 template <class T>
-std::optional<T> if_whole(const McapFields& fields, T value) {
+std::optional<T> if_whole(const Fields& fields, T value) {
   return fields.is_whole() ? std::optional<T>(std::move(value)) : std::nullopt;
 }
 
 }  // namespace
 
-std::optional<McapSchema> mcap_schema(std::string_view content) {
-  McapFields fields(content);
-  McapSchema out;
+std::optional<Schema> parse_schema(std::string_view content) {
+  Fields fields(content);
+  Schema out;
   out.id = fields.u16();
   out.name = fields.text();
   out.encoding = fields.text();
@@ -61,9 +61,9 @@ std::optional<McapSchema> mcap_schema(std::string_view content) {
   return if_whole(fields, std::move(out));
 }
 
-std::optional<McapChannel> mcap_channel(std::string_view content) {
-  McapFields fields(content);
-  McapChannel out;
+std::optional<ChannelRecord> parse_channel(std::string_view content) {
+  Fields fields(content);
+  ChannelRecord out;
   out.id = fields.u16();
   out.schema = fields.u16();
   out.topic = fields.text();
@@ -72,9 +72,9 @@ std::optional<McapChannel> mcap_channel(std::string_view content) {
   return if_whole(fields, std::move(out));
 }
 
-std::optional<McapMessage> mcap_message(std::string_view content) {
-  McapFields fields(content);
-  McapMessage out;
+std::optional<Message> parse_message(std::string_view content) {
+  Fields fields(content);
+  Message out;
   out.channel = fields.u16();
   out.sequence = fields.u32();
   out.log_ns = fields.u64();
@@ -83,9 +83,9 @@ std::optional<McapMessage> mcap_message(std::string_view content) {
   return if_whole(fields, out);
 }
 
-std::optional<McapChunkHead> mcap_chunk_head(std::string_view content) {
-  McapFields fields(content);
-  McapChunkHead out;
+std::optional<ChunkHead> parse_chunk_head(std::string_view content) {
+  Fields fields(content);
+  ChunkHead out;
   out.start_ns = fields.u64();
   out.end_ns = fields.u64();
   out.unpacked_bytes = fields.u64();
@@ -96,17 +96,17 @@ std::optional<McapChunkHead> mcap_chunk_head(std::string_view content) {
   return if_whole(fields, std::move(out));
 }
 
-std::optional<McapMetadata> mcap_metadata(std::string_view content) {
-  McapFields fields(content);
-  McapMetadata out;
+std::optional<Metadata> parse_metadata(std::string_view content) {
+  Fields fields(content);
+  Metadata out;
   out.name = fields.text();
   out.values = fields.map();
   return if_whole(fields, std::move(out));
 }
 
-std::optional<McapAttachmentHead> mcap_attachment_head(std::string_view content) {
-  McapFields fields(content);
-  McapAttachmentHead out;
+std::optional<AttachmentHead> parse_attachment_head(std::string_view content) {
+  Fields fields(content);
+  AttachmentHead out;
   out.log_ns = fields.u64();
   out.create_ns = fields.u64();
   out.name = fields.text();
@@ -116,9 +116,9 @@ std::optional<McapAttachmentHead> mcap_attachment_head(std::string_view content)
   return if_whole(fields, std::move(out));
 }
 
-std::optional<std::string_view> mcap_attachment_data(std::string_view content,
-                                                     const McapAttachmentHead& head) {
-  McapFields fields(content.substr(head.head_bytes));
+std::optional<std::string_view> attachment_data(std::string_view content,
+                                                const AttachmentHead& head) {
+  Fields fields(content.substr(head.head_bytes));
   const std::string_view data = fields.take(head.bytes);
   const std::uint32_t crc = fields.u32();
   const std::string_view checked = content.substr(0, head.head_bytes + data.size());
@@ -126,21 +126,21 @@ std::optional<std::string_view> mcap_attachment_data(std::string_view content,
   return is_damaged ? std::nullopt : std::optional(data);
 }
 
-std::optional<McapFooter> mcap_footer(std::string_view content) {
-  McapFields fields(content);
-  McapFooter out;
+std::optional<Footer> parse_footer(std::string_view content) {
+  Fields fields(content);
+  Footer out;
   out.summary_start = fields.u64();
   out.summary_offset_start = fields.u64();
   out.summary_crc = fields.u32();
   return if_whole(fields, out);
 }
 
-std::optional<McapStatistics> mcap_statistics(std::string_view content) {
-  McapFields fields(content);
-  McapStatistics out;
+std::optional<Statistics> parse_statistics(std::string_view content) {
+  Fields fields(content);
+  Statistics out;
   out.messages = fields.u64();
   fields.take(2 + 4 + 4 + 4 + 4 + 8 + 8);
-  McapFields counts(fields.text());
+  Fields counts(fields.text());
   while (counts.left() > 0 && counts.is_whole()) {
     const std::uint16_t channel = counts.u16();
     out.of_channels[channel] = counts.u64();
@@ -149,7 +149,7 @@ std::optional<McapStatistics> mcap_statistics(std::string_view content) {
   return if_whole(fields, std::move(out));
 }
 
-std::string mcap_record_name(McapOp op) {
+std::string record_name(Op op) {
   constexpr std::array<std::string_view, 16> names{
       "",
       "the header",
@@ -173,4 +173,4 @@ std::string mcap_record_name(McapOp op) {
   return fmt::format("a record of kind 0x{:02x}", number);
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

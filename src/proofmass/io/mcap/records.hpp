@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
 /// Record types of an MCAP file. Source: MCAP format specification, "Records".
-enum class McapOp : unsigned char {
+enum class Op : unsigned char {
   header = 0x01,
   footer = 0x02,
   schema = 0x03,
@@ -29,28 +29,28 @@ enum class McapOp : unsigned char {
   data_end = 0x0F,
 };
 
-inline constexpr std::string_view mcap_magic{"\x89MCAP0\r\n", 8};
-inline constexpr std::size_t mcap_record_head = 9;    ///< bytes: opcode and length
-inline constexpr std::size_t mcap_footer_bytes = 20;  ///< without its header
+inline constexpr std::string_view magic{"\x89MCAP0\r\n", 8};
+inline constexpr std::size_t record_head_bytes = 9;  ///< bytes: opcode and length
+inline constexpr std::size_t footer_bytes = 20;      ///< without its header
 
-using McapMap = std::map<std::string, std::string>;
+using Map = std::map<std::string, std::string>;
 
-struct McapSchema {
+struct Schema {
   std::uint16_t id = 0;
   std::string name;
   std::string encoding;
   std::string data;
 };
 
-struct McapChannel {
+struct ChannelRecord {
   std::uint16_t id = 0;
   std::uint16_t schema = 0;  ///< 0: none
   std::string topic;
   std::string encoding;
-  McapMap metadata;
+  Map metadata;
 };
 
-struct McapMessage {
+struct Message {
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
   std::uint64_t log_ns = 0;
@@ -59,7 +59,7 @@ struct McapMessage {
 };
 
 /// A chunk's record up to its data.
-struct McapChunkHead {
+struct ChunkHead {
   std::uint64_t start_ns = 0;
   std::uint64_t end_ns = 0;
   std::uint64_t unpacked_bytes = 0;
@@ -69,13 +69,13 @@ struct McapChunkHead {
   std::size_t head_bytes = 0;  ///< size of the record's content before the compressed bytes
 };
 
-struct McapMetadata {
+struct Metadata {
   std::string name;
-  McapMap values;
+  Map values;
 };
 
 /// An attachment's record up to its data.
-struct McapAttachmentHead {
+struct AttachmentHead {
   std::uint64_t log_ns = 0;
   std::uint64_t create_ns = 0;  ///< 0: unknown
   std::string name;
@@ -84,22 +84,22 @@ struct McapAttachmentHead {
   std::size_t head_bytes = 0;  ///< size of the record's content before the attachment's
 };
 
-struct McapFooter {
+struct Footer {
   std::uint64_t summary_start = 0;  ///< 0: none
   std::uint64_t summary_offset_start = 0;
   std::uint32_t summary_crc = 0;  ///< 0: none
 };
 
-struct McapStatistics {
+struct Statistics {
   std::uint64_t messages = 0;
   std::map<std::uint16_t, std::uint64_t> of_channels;  ///< messages
 };
 
 /// Reads numbers and texts, little-endian, from the beginning of bytes that may be too few: after
 /// the first missing one everything is zero or empty, and is_whole() false.
-class McapFields {
+class Fields {
  public:
-  explicit McapFields(std::string_view bytes) : bytes_(bytes) {}
+  explicit Fields(std::string_view bytes) : bytes_(bytes) {}
 
   std::uint8_t u8() { return static_cast<std::uint8_t>(number(1)); }
   std::uint16_t u16() { return static_cast<std::uint16_t>(number(2)); }
@@ -107,7 +107,7 @@ class McapFields {
   std::uint64_t u64() { return number(8); }
   std::string_view text() { return take(u32()); }  ///< preceded by its length
   std::string_view take(std::uint64_t count);
-  McapMap map();
+  Map map();
   [[nodiscard]] bool is_whole() const { return is_whole_; }
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }
 
@@ -120,19 +120,19 @@ class McapFields {
 
 /// Parses the content of a record; nullopt if it is truncated. Bytes after the last field are
 /// ignored, because later versions may add some.
-[[nodiscard]] std::optional<McapSchema> mcap_schema(std::string_view content);
-[[nodiscard]] std::optional<McapChannel> mcap_channel(std::string_view content);
-[[nodiscard]] std::optional<McapMessage> mcap_message(std::string_view content);
-[[nodiscard]] std::optional<McapChunkHead> mcap_chunk_head(std::string_view content);
-[[nodiscard]] std::optional<McapMetadata> mcap_metadata(std::string_view content);
-[[nodiscard]] std::optional<McapAttachmentHead> mcap_attachment_head(std::string_view content);
+[[nodiscard]] std::optional<Schema> parse_schema(std::string_view content);
+[[nodiscard]] std::optional<ChannelRecord> parse_channel(std::string_view content);
+[[nodiscard]] std::optional<Message> parse_message(std::string_view content);
+[[nodiscard]] std::optional<ChunkHead> parse_chunk_head(std::string_view content);
+[[nodiscard]] std::optional<Metadata> parse_metadata(std::string_view content);
+[[nodiscard]] std::optional<AttachmentHead> parse_attachment_head(std::string_view content);
 /// The attachment itself; nullopt if it is truncated or its checksum is wrong.
-[[nodiscard]] std::optional<std::string_view> mcap_attachment_data(std::string_view content,
-                                                                   const McapAttachmentHead& head);
-[[nodiscard]] std::optional<McapFooter> mcap_footer(std::string_view content);
-[[nodiscard]] std::optional<McapStatistics> mcap_statistics(std::string_view content);
+[[nodiscard]] std::optional<std::string_view> attachment_data(std::string_view content,
+                                                              const AttachmentHead& head);
+[[nodiscard]] std::optional<Footer> parse_footer(std::string_view content);
+[[nodiscard]] std::optional<Statistics> parse_statistics(std::string_view content);
 
 /// "a chunk", "a message"; "a record of kind 0x85" if unknown.
-[[nodiscard]] std::string mcap_record_name(McapOp op);
+[[nodiscard]] std::string record_name(Op op);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

@@ -8,13 +8,13 @@
 #include "proofmass/io/messages/units.hpp"
 #include "proofmass/io/shown_text.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
 /// Converts the columns of a plan to rows of a table: the time first, without the plan's own stamp.
-class RosDecoder final : public McapDecoder {
+class RosDecoder final : public Decoder {
  public:
-  RosDecoder(CdrPlan plan, CdrLayout layout, const McapTopic& topic)
+  RosDecoder(CdrPlan plan, CdrLayout layout, const Topic& topic)
       : plan_(std::move(plan)),
         layout_(layout),
         figures_(plan_.columns.size()),
@@ -36,7 +36,7 @@ class RosDecoder final : public McapDecoder {
   [[nodiscard]] bool has_columns() const { return !kept_.empty(); }
   [[nodiscard]] const TableHead& head() const override { return head_; }
 
-  [[nodiscard]] Result<std::size_t> take(const McapMessage& message, std::uint64_t) override {
+  [[nodiscard]] Result<std::size_t> take(const Message& message, std::uint64_t) override {
     if (const Status decoded = decode_cdr(message.data, layout_, plan_, figures_); !decoded)
       return decoded.error();
     time_ = clock_.take(stamp(), message.log_ns);
@@ -66,7 +66,7 @@ class RosDecoder final : public McapDecoder {
                     static_cast<std::int64_t>(figures_[*plan_.stamp + 1]));
   }
 
-  std::optional<std::int64_t> first_stamp(const McapTopic& topic) {
+  std::optional<std::int64_t> first_stamp(const Topic& topic) {
     if (!decode_cdr(topic.first.data, layout_, plan_, figures_)) return std::nullopt;
     return stamp();
   }
@@ -101,7 +101,7 @@ class RosDecoder final : public McapDecoder {
 
 }  // namespace
 
-Result<std::unique_ptr<McapDecoder>> mcap_ros_decoder(const McapTopic& topic) {
+Result<std::unique_ptr<Decoder>> ros_decoder(const Topic& topic) {
   const bool is_ros1 = topic.channel.encoding == "ros1";
   const std::string_view wanted = is_ros1 ? "ros1msg" : "ros2msg";
   if (topic.schema.encoding != wanted)
@@ -116,7 +116,7 @@ Result<std::unique_ptr<McapDecoder>> mcap_ros_decoder(const McapTopic& topic) {
                                               is_ros1 ? CdrLayout::ros1 : CdrLayout::xcdr, topic);
   if (!decoder->has_columns())
     return Error{Errc::unsupported, "whose only figures are a time stamp"};
-  return std::unique_ptr<McapDecoder>(std::move(decoder));
+  return std::unique_ptr<Decoder>(std::move(decoder));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

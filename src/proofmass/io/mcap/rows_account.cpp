@@ -6,7 +6,7 @@
 #include "proofmass/io/bytes/little_endian.hpp"
 #include "proofmass/io/mcap/samples.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
 double double_at(std::string_view bytes, std::size_t index) {
@@ -17,11 +17,11 @@ double double_at(std::string_view bytes, std::size_t index) {
 
 }  // namespace
 
-void McapRowsAccount::add(const McapChannel& channel, const McapMessage& message) {
-  if (channel.topic != "recording" || channel.encoding != mcap_samples_encoding) return;
+void RowsAccount::add(const ChannelRecord& channel, const Message& message) {
+  if (channel.topic != "recording" || channel.encoding != samples_encoding) return;
   const auto head = read_samples_head(message.data);
   if (!head || head->rows == 0) return;
-  const std::string_view figures = message.data.substr(mcap_samples_head);
+  const std::string_view figures = message.data.substr(samples_head_bytes);
   const double first_s = head->has_stamps ? double_at(figures, 0) : 0.0;
   if (head->first > expected_) note_missing(head->first, first_s);
   if (!has_rows_) first_s_ = first_s;
@@ -33,7 +33,7 @@ void McapRowsAccount::add(const McapChannel& channel, const McapMessage& message
     expected_ = ~std::uint64_t{0};
 }
 
-void McapRowsAccount::note_missing(std::uint64_t first, double first_s) {
+void RowsAccount::note_missing(std::uint64_t first, double first_s) {
   const std::uint64_t missing = first - expected_;
   if (__builtin_add_overflow(missing_, missing, &missing_)) missing_ = ~std::uint64_t{0};
   constexpr std::size_t most_listed = 16;
@@ -44,7 +44,7 @@ void McapRowsAccount::note_missing(std::uint64_t first, double first_s) {
   notes_.push_back({Severity::bad, std::move(text)});
 }
 
-void McapRowsAccount::report(Recovery& out) const {
+void RowsAccount::report(Recovery& out) const {
   out.samples = samples_;
   out.first_s = first_s_;
   out.last_s = last_s_;
@@ -52,4 +52,4 @@ void McapRowsAccount::report(Recovery& out) const {
   out.notes.insert(out.notes.end(), notes_.begin(), notes_.end());
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

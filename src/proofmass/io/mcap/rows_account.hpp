@@ -6,13 +6,13 @@
 #include "proofmass/core/recording_log.hpp"
 #include "proofmass/io/mcap/records.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
 /// The rows present in the topic "recording" of one of our own files, by the numbers and stamps of
 /// its blocks.
-class McapRowsAccount {
+class RowsAccount {
  public:
-  void add(const McapChannel& channel, const McapMessage& message);
+  void add(const ChannelRecord& channel, const Message& message);
   void report(Recovery& out) const;
 
  private:
@@ -26,4 +26,4 @@ class McapRowsAccount {
   std::vector<Note> notes_;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

@@ -18,7 +18,7 @@
 #include "proofmass/io/mcap/walk.hpp"
 #include "proofmass/io/shown_text.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
 constexpr std::size_t most_definitions = 0xFFFF;  ///< schemas or channels per file
@@ -26,35 +26,35 @@ constexpr std::size_t most_definitions = 0xFFFF;  ///< schemas or channels per f
 /// The new file, built while the old one is read.
 class Salvager {
  public:
-  explicit Salvager(const McapSummary& summary) {
-    for (const McapSchema& schema : summary.schemas) schemas_[schema.id] = {schema, 0};
-    for (const McapChannel& channel : summary.channels) channels_[channel.id] = {channel, 0};
+  explicit Salvager(const Summary& summary) {
+    for (const Schema& schema : summary.schemas) schemas_[schema.id] = {schema, 0};
+    for (const ChannelRecord& channel : summary.channels) channels_[channel.id] = {channel, 0};
   }
 
-  void take(const McapRecord& record) {
-    if (record.op == McapOp::header) {
-      McapFields fields(record.content);
+  void take(const Record& record) {
+    if (record.op == Op::header) {
+      Fields fields(record.content);
       profile_ = fields.text();
       library_ = fields.text();
-    } else if (record.op == McapOp::schema) {
-      if (auto schema = mcap_schema(record.content)) define(schemas_, std::move(*schema));
-    } else if (record.op == McapOp::channel) {
-      if (auto channel = mcap_channel(record.content)) define(channels_, std::move(*channel));
-    } else if (record.op == McapOp::message) {
+    } else if (record.op == Op::schema) {
+      if (auto schema = parse_schema(record.content)) define(schemas_, std::move(*schema));
+    } else if (record.op == Op::channel) {
+      if (auto channel = parse_channel(record.content)) define(channels_, std::move(*channel));
+    } else if (record.op == Op::message) {
       take_message(record);
-    } else if (record.op == McapOp::metadata) {
-      if (const auto metadata = mcap_metadata(record.content)) builder().add_metadata(*metadata);
-    } else if (record.op == McapOp::attachment) {
+    } else if (record.op == Op::metadata) {
+      if (const auto metadata = parse_metadata(record.content)) builder().add_metadata(*metadata);
+    } else if (record.op == Op::attachment) {
       take_attachment(record);
     }
   }
 
-  [[nodiscard]] McapBuilder& builder() {
+  [[nodiscard]] Builder& builder() {
     if (!builder_)
-      builder_ = std::make_unique<McapBuilder>(
+      builder_ = std::make_unique<Builder>(
           fmt::format("proofmass {}, saved from what was written by {}", version(),
                       library_.empty() ? "an unnamed program" : shown(library_)),
-          McapChunking{.is_self_contained = true}, profile_);
+          Chunking{.is_self_contained = true}, profile_);
     return *builder_;
   }
   [[nodiscard]] bool has_anything() const { return builder_ != nullptr; }
@@ -102,9 +102,9 @@ class Salvager {
   [[nodiscard]] std::uint16_t channel_number(std::uint16_t id) {
     const auto found = channels_.find(id);
     if (found == channels_.end()) return 0;
-    Defined<McapChannel>& channel = found->second;
+    Defined<ChannelRecord>& channel = found->second;
     if (channel.number == 0 && channel_count_ < most_definitions) {
-      McapChannel copy = channel.record;
+      ChannelRecord copy = channel.record;
       copy.schema = schema_number(copy.schema);
       channel.number = builder().add_channel(std::move(copy));
       ++channel_count_;
@@ -112,8 +112,8 @@ class Salvager {
     return channel.number;
   }
 
-  void take_message(const McapRecord& record) {
-    auto message = mcap_message(record.content);
+  void take_message(const Record& record) {
+    auto message = parse_message(record.content);
     if (!message) return;
     const std::uint16_t number = channel_number(message->channel);
     if (number == 0) {
@@ -126,10 +126,10 @@ class Salvager {
     ++messages_;
   }
 
-  void take_attachment(const McapRecord& record) {
-    const auto head = mcap_attachment_head(record.content);
+  void take_attachment(const Record& record) {
+    const auto head = parse_attachment_head(record.content);
     if (!head) return;
-    if (const auto data = mcap_attachment_data(record.content, *head)) {
+    if (const auto data = attachment_data(record.content, *head)) {
       builder().add_attachment(*head, *data);
       return;
     }
@@ -142,12 +142,12 @@ class Salvager {
   }
 
   std::string profile_, library_;
-  std::unique_ptr<McapBuilder> builder_;
-  Definitions<McapSchema> schemas_;
-  Definitions<McapChannel> channels_;
+  std::unique_ptr<Builder> builder_;
+  Definitions<Schema> schemas_;
+  Definitions<ChannelRecord> channels_;
   std::size_t schema_count_ = 0, channel_count_ = 0;
   std::uint64_t messages_ = 0, undefined_ = 0;
-  McapRowsAccount rows_;
+  RowsAccount rows_;
   std::vector<Note> notes_;
 };
 
@@ -157,20 +157,19 @@ Result<Recovery> salvage(const std::shared_ptr<const RandomBytes>& bytes,
   FileWindow window(bytes);
   Recovery out;
   out.bytes_read = bytes->size();
-  const auto magic = window.view(0, mcap_magic.size());
-  if (!magic) return magic.error();
-  if (*magic != mcap_magic)
-    out.notes.push_back({Severity::bad, "does not begin as an MCAP file does"});
-  const auto summary = read_mcap_summary(window, out.notes);
+  const auto head = window.view(0, magic.size());
+  if (!head) return head.error();
+  if (*head != magic) out.notes.push_back({Severity::bad, "does not begin as an MCAP file does"});
+  const auto summary = read_summary(window, out.notes);
   if (!summary) return summary.error();
-  const McapSummary known = summary->value_or(McapSummary{});
+  const Summary known = summary->value_or(Summary{});
   Salvager salvager(known);
-  McapWalk walk(bytes, {.check_data = known.has_data_checksum, .search = true});
-  const auto put_on = [&](McapBuilder& builder) {
+  Walk walk(bytes, {.check_data = known.has_data_checksum, .search = true});
+  const auto put_on = [&](Builder& builder) {
     const std::string ready = builder.take_bytes();
     return ready.empty() ? Status(Done{}) : put(ready);
   };
-  McapRecord record;
+  Record record;
   for (;;) {
     const auto found = walk.next(record);
     if (!found) return found.error();
@@ -185,7 +184,7 @@ Result<Recovery> salvage(const std::shared_ptr<const RandomBytes>& bytes,
                  "no message, metadata or attachment of an MCAP file is whole in it"};
   salvager.builder().finish();
   if (const Status done = put_on(salvager.builder()); !done) return done.error();
-  const McapWalkCounts& counts = walk.counts();
+  const WalkCounts& counts = walk.counts();
   out.chunks = counts.chunks;
   out.damaged_chunks = counts.damaged_chunks;
   out.bytes_lost = counts.skipped;
@@ -214,9 +213,7 @@ Result<Recovery> salvage(std::unique_ptr<ByteSource> source,
 
 }  // namespace
 
-Result<Recovery> salvage_mcap(const std::string& path,
-                              const PutBytes& put,
-                              const Progress& progress) {
+Result<Recovery> salvage(const std::string& path, const PutBytes& put, const Progress& progress) {
   auto file = open_file(path);
   if (!file) return file.error().at(path);
   auto saved = salvage(std::move(file).value(), put, progress);
@@ -224,8 +221,8 @@ Result<Recovery> salvage_mcap(const std::string& path,
   return saved;
 }
 
-Result<Recovery> salvage_mcap(std::span<const std::byte> bytes, const PutBytes& put) {
+Result<Recovery> salvage(std::span<const std::byte> bytes, const PutBytes& put) {
   return salvage(open_memory(bytes), put, {});
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

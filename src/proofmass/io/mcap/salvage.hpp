@@ -9,7 +9,7 @@
 #include "proofmass/core/recording_log.hpp"
 #include "proofmass/core/result.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
 /// Receives the bytes of a new file, piece by piece.
 using PutBytes = std::function<Status(const std::string& bytes)>;
@@ -20,10 +20,10 @@ using PutBytes = std::function<Status(const std::string& bytes)>;
 /// Source: MCAP format specification, version 0.
 /// Errors: unreadable, corrupt (nothing intact), those of `put`.
 /// Cost: one pass if nothing is damaged; one chunk in memory.
-[[nodiscard]] Result<Recovery> salvage_mcap(const std::string& path,
-                                            const PutBytes& put,
-                                            const Progress& progress = {});
+[[nodiscard]] Result<Recovery> salvage(const std::string& path,
+                                       const PutBytes& put,
+                                       const Progress& progress = {});
 /// The same for bytes in memory.
-[[nodiscard]] Result<Recovery> salvage_mcap(std::span<const std::byte> bytes, const PutBytes& put);
+[[nodiscard]] Result<Recovery> salvage(std::span<const std::byte> bytes, const PutBytes& put);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

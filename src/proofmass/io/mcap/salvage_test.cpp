@@ -9,7 +9,7 @@
 #include "proofmass/io/mcap/specimens.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io::mcap_salvage_test {
+namespace proofmass::io::mcap::salvage_test {
 namespace {
 
 using namespace specimen;
@@ -21,7 +21,7 @@ struct Saved {
 
 Saved salvaged(const std::string& file) {
   Saved out;
-  out.recovery = salvage_mcap(std::as_bytes(std::span(file)), [&](const std::string& bytes) {
+  out.recovery = salvage(std::as_bytes(std::span(file)), [&](const std::string& bytes) {
     out.bytes += bytes;
     return Status(Done{});
   });
@@ -137,17 +137,17 @@ TEST(McapSalvage, EndsItsSearchInBytesMadeForIt) {
 
 TEST(McapSalvage, HandsOnThatNothingCanBeWritten) {
   const std::string file = mcap_front() + mcap_chunk(json_channel() + json_messages(0, 10));
-  const auto full = salvage_mcap(std::as_bytes(std::span(file)), [](const std::string&) {
+  const auto full = salvage(std::as_bytes(std::span(file)), [](const std::string&) {
     return Status(Error{Errc::unreadable, "full"});
   });
   EXPECT_EQ(full.error().message, "full");
 }
 
-TEST(McapRecording, TakenBackToAMarkIsAsIfNothingHadFollowed) {
+TEST(RecordingEncoder, TakenBackToAMarkIsAsIfNothingHadFollowed) {
   const std::vector<Channel> columns{{"acc_x", *parse_unit("m/s^2"), {}}};
   const std::vector<double> stamps{0.0, 0.5}, values{1.0, 2.0};
   const auto begun = [&](std::string& bytes) {
-    McapRecording file({.is_self_contained = true});
+    RecordingEncoder file({.is_self_contained = true});
     const auto topic = file.add_samples_topic({.name = "recording", .columns = columns});
     for (std::uint64_t k = 0; k < 4; k += 2) {
       file.add_samples(topic, k, 5 + k, stamps, std::vector<View<double>>{values});
@@ -157,13 +157,13 @@ TEST(McapRecording, TakenBackToAMarkIsAsIfNothingHadFollowed) {
     return file;
   };
   std::string plain, rewound;
-  McapRecording first = begun(plain);
+  RecordingEncoder first = begun(plain);
   first.finish();
   plain += first.take_bytes();
-  McapRecording second = begun(rewound);
-  const McapMark mark = second.mark();
+  RecordingEncoder second = begun(rewound);
+  const Mark mark = second.mark();
   EXPECT_EQ(mark.bytes, rewound.size());
-  (void)second.add_json_topic("events", std::string(mcap_event_schema));
+  (void)second.add_json_topic("events", std::string(event_schema));
   second.add_json(2, 99, "{}");
   second.add_metadata("summary", {{"a", "b"}});
   second.finish();
@@ -178,11 +178,11 @@ TEST(McapRecording, TakenBackToAMarkIsAsIfNothingHadFollowed) {
 }
 
 // The first message of a topic does not determine the length of the others.
-TEST(McapRecording, RowsOfAnotherTopicAreToldWhereTheyAreKnownAndElseNotGuessed) {
+TEST(RecordingEncoder, RowsOfAnotherTopicAreToldWhereTheyAreKnownAndElseNotGuessed) {
   const std::vector<Channel> columns{{"acc_x", *parse_unit("m/s^2"), {}}};
   const std::vector<double> stamps{0.0, 0.5, 1.0}, values{1.0, 2.0, 3.0};
   for (const bool in_one_message : {true, false}) {
-    McapRecording file;
+    RecordingEncoder file;
     const auto topic = file.add_samples_topic({.name = "recording", .columns = columns});
     const auto other = file.add_samples_topic(
         {.name = "estimates", .columns = columns, .derived_from = "recording"});
@@ -201,8 +201,8 @@ TEST(McapRecording, RowsOfAnotherTopicAreToldWhereTheyAreKnownAndElseNotGuessed)
   }
 }
 
-TEST(McapRecording, EventsAreInANoteAndAreNoTable) {
-  McapRecording file;
+TEST(RecordingEncoder, EventsAreInANoteAndAreNoTable) {
+  RecordingEncoder file;
   const std::vector<Channel> columns{{"u", *parse_unit("V"), {}}};
   const std::vector<Channel> derived{{"acc_x", *parse_unit("m/s^2"), {}}};
   const std::vector<double> stamps{0.0, 0.5, 1.0}, values{1.0, 2.0, 3.0};
@@ -210,8 +210,8 @@ TEST(McapRecording, EventsAreInANoteAndAreNoTable) {
   const auto topic = file.add_samples_topic({.name = "recording", .columns = columns});
   const auto other = file.add_samples_topic(
       {.name = "estimates", .columns = derived, .derived_from = "recording"});
-  const auto events = file.add_json_topic("events", std::string(mcap_event_schema));
-  const auto clock = file.add_json_topic("clock", std::string(mcap_clock_schema));
+  const auto events = file.add_json_topic("events", std::string(event_schema));
+  const auto clock = file.add_json_topic("clock", std::string(clock_schema));
   file.add_json(events, 0, R"({"time_s":0.25,"kind":"gap","rows":7,"text":"a hole"})");
   file.add_samples(topic, 0, 0, stamps, views);
   file.add_samples(other, 0, 0, stamps, views);
@@ -227,4 +227,4 @@ TEST(McapRecording, EventsAreInANoteAndAreNoTable) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::mcap_salvage_test
+}  // namespace proofmass::io::mcap::salvage_test

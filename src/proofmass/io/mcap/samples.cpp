@@ -11,7 +11,7 @@
 #include "proofmass/io/json_leaves.hpp"
 #include "proofmass/io/mcap/records.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
 constexpr std::uint8_t version = 1;
@@ -46,10 +46,10 @@ std::optional<ColumnPath> column_path(std::string_view path) {
 
 }  // namespace
 
-Result<McapSamplesHead> read_samples_head(std::string_view message) {
-  McapFields fields(message);
+Result<SamplesHead> read_samples_head(std::string_view message) {
+  Fields fields(message);
   const std::uint8_t found_version = fields.u8();
-  McapSamplesHead head;
+  SamplesHead head;
   head.has_stamps = (fields.u8() & stamps_flag) != 0;
   head.columns = fields.u16();
   head.rows = fields.u32();
@@ -80,9 +80,9 @@ void write_samples(std::uint64_t first,
   for (const View<double> column : columns) append_doubles(message, column);
 }
 
-std::string samples_schema(const McapSamplesLayout& layout) {
+std::string samples_schema(const SamplesLayout& layout) {
   std::string columns;
-  for (const McapSamplesLayout::Column& column : layout.columns)
+  for (const SamplesLayout::Column& column : layout.columns)
     columns += fmt::format("{}{{\"name\":{},\"unit\":{}}}", columns.empty() ? "" : ",",
                            json_text(column.name), json_text(column.unit));
   return fmt::format(
@@ -93,7 +93,7 @@ std::string samples_schema(const McapSamplesLayout& layout) {
       columns);
 }
 
-std::map<std::string, std::string> samples_metadata(const McapSamplesLayout& layout) {
+std::map<std::string, std::string> samples_metadata(const SamplesLayout& layout) {
   std::map<std::string, std::string> out{{"stamps", layout.has_stamps ? "yes" : "no"}};
   if (layout.rate_hz) out["rate_hz"] = fmt::format("{}", *layout.rate_hz);
   if (layout.start_ns) out["start_ns"] = std::to_string(*layout.start_ns);
@@ -101,9 +101,9 @@ std::map<std::string, std::string> samples_metadata(const McapSamplesLayout& lay
   return out;
 }
 
-Result<McapSamplesLayout> read_samples_layout(std::string_view schema,
-                                              const std::map<std::string, std::string>& metadata) {
-  McapSamplesLayout out;
+Result<SamplesLayout> read_samples_layout(std::string_view schema,
+                                          const std::map<std::string, std::string>& metadata) {
+  SamplesLayout out;
   bool is_sound = true;
   const Status visited = visit_json(schema, [&](const JsonLeaf& leaf) {
     const auto place = column_path(leaf.path);
@@ -125,4 +125,4 @@ Result<McapSamplesLayout> read_samples_layout(std::string_view schema,
   return out;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

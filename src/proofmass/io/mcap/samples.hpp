@@ -13,7 +13,7 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/core/view.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
 /// Our own message encoding: blocks of samples, little-endian.
 ///   byte 0  u8   version, 1
@@ -23,11 +23,11 @@ namespace proofmass::io {
 ///        8  u64  number of the first row, from 0 at the recording's first sample
 ///       16  f64  stamps, one per row: seconds from the recording's first sample
 ///           f64  column by column, one value per row
-inline constexpr std::string_view mcap_samples_encoding = "proofmass-samples";
-inline constexpr std::size_t mcap_samples_head = 16;
+inline constexpr std::string_view samples_encoding = "proofmass-samples";
+inline constexpr std::size_t samples_head_bytes = 16;
 
 /// Description of these blocks in the schema and the channel.
-struct McapSamplesLayout {
+struct SamplesLayout {
   struct Column {
     std::string name;
     std::string unit;  ///< symbol; may be empty
@@ -39,7 +39,7 @@ struct McapSamplesLayout {
   std::string derived_from{};            ///< topic from which it was computed; empty: measured
 };
 
-struct McapSamplesHead {
+struct SamplesHead {
   bool has_stamps = false;
   std::uint16_t columns = 0;
   std::uint32_t rows = 0;
@@ -48,7 +48,7 @@ struct McapSamplesHead {
 
 /// Reads a block's header and checks it against the available bytes. Errors: corrupt (a length
 /// other than stated), unsupported (another version).
-[[nodiscard]] Result<McapSamplesHead> read_samples_head(std::string_view message);
+[[nodiscard]] Result<SamplesHead> read_samples_head(std::string_view message);
 /// Replaces the bytes by an encoded block.
 void write_samples(std::uint64_t first,
                    View<double> stamps_s,
@@ -56,11 +56,11 @@ void write_samples(std::uint64_t first,
                    std::string& message);
 
 /// The JSON schema: `columns` lists name and unit of each.
-[[nodiscard]] std::string samples_schema(const McapSamplesLayout& layout);
+[[nodiscard]] std::string samples_schema(const SamplesLayout& layout);
 /// Metadata of the channel: "stamps", "rate_hz", "start_ns", "derived_from".
-[[nodiscard]] std::map<std::string, std::string> samples_metadata(const McapSamplesLayout& layout);
+[[nodiscard]] std::map<std::string, std::string> samples_metadata(const SamplesLayout& layout);
 /// Errors: corrupt (not such a schema).
-[[nodiscard]] Result<McapSamplesLayout> read_samples_layout(
+[[nodiscard]] Result<SamplesLayout> read_samples_layout(
     std::string_view schema, const std::map<std::string, std::string>& metadata);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

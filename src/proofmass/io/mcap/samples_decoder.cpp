@@ -7,17 +7,17 @@
 #include "proofmass/io/mcap/samples.hpp"
 #include "proofmass/io/shown_text.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
-std::string heading_of(const McapSamplesLayout::Column& column) {
+std::string heading_of(const SamplesLayout::Column& column) {
   const bool is_plain = std::ranges::none_of(
       column.name, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
   const std::string name = is_plain ? column.name : shown(column.name);
   return column.unit.empty() ? name : fmt::format("{} ({})", name, shown(column.unit));
 }
 
-TableHead head_of(const McapSamplesLayout& layout) {
+TableHead head_of(const SamplesLayout& layout) {
   TableHead head;
   head.format = "MCAP";
   if (layout.has_stamps) {
@@ -27,21 +27,21 @@ TableHead head_of(const McapSamplesLayout& layout) {
     head.rate_hz = layout.rate_hz;
     head.start_ns = layout.start_ns;
   }
-  for (const McapSamplesLayout::Column& column : layout.columns)
+  for (const SamplesLayout::Column& column : layout.columns)
     head.headings.push_back(heading_of(column));
   head.columns = head.headings.size();
   return head;
 }
 
 /// Missing rows of the file become rows of NaN if only the rate gives the times.
-class SamplesDecoder final : public McapDecoder {
+class SamplesDecoder final : public Decoder {
  public:
-  explicit SamplesDecoder(McapSamplesLayout layout)
+  explicit SamplesDecoder(SamplesLayout layout)
       : layout_(std::move(layout)), head_(head_of(layout_)) {}
 
   [[nodiscard]] const TableHead& head() const override { return head_; }
 
-  [[nodiscard]] Result<std::size_t> take(const McapMessage& message,
+  [[nodiscard]] Result<std::size_t> take(const Message& message,
                                          std::uint64_t lost_bytes) override {
     const auto block = read_samples_head(message.data);
     if (!block) return block.error();
@@ -49,7 +49,7 @@ class SamplesDecoder final : public McapDecoder {
       return Error{Errc::corrupt, fmt::format("has {} columns where the schema has {}",
                                               block->columns, layout_.columns.size())};
     rows_ = block->rows;
-    figures_ = message.data.substr(mcap_samples_head);
+    figures_ = message.data.substr(samples_head_bytes);
     missing_ = missing_before(block->first, lost_bytes);
     taken_rows_ += rows_;
     expected_ = block->first + rows_ < block->first ? block->first : block->first + rows_;
@@ -115,7 +115,7 @@ class SamplesDecoder final : public McapDecoder {
     return static_cast<std::size_t>(gap);
   }
 
-  McapSamplesLayout layout_;
+  SamplesLayout layout_;
   TableHead head_;
   std::string_view figures_;  ///< values of the message
   std::size_t rows_ = 0;
@@ -132,10 +132,10 @@ class SamplesDecoder final : public McapDecoder {
 
 }  // namespace
 
-Result<std::unique_ptr<McapDecoder>> mcap_samples_decoder(const McapTopic& topic) {
+Result<std::unique_ptr<Decoder>> samples_decoder(const Topic& topic) {
   auto layout = read_samples_layout(topic.schema.data, topic.channel.metadata);
   if (!layout) return layout.error();
-  return std::unique_ptr<McapDecoder>(std::make_unique<SamplesDecoder>(std::move(layout).value()));
+  return std::unique_ptr<Decoder>(std::make_unique<SamplesDecoder>(std::move(layout).value()));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

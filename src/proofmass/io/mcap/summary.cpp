@@ -4,44 +4,44 @@
 
 #include "proofmass/io/bytes/crc32.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
-constexpr std::uint64_t end_bytes = mcap_record_head + mcap_footer_bytes + mcap_magic.size();
-constexpr std::uint64_t data_end_bytes = mcap_record_head + 4;
+constexpr std::uint64_t end_bytes = record_head_bytes + footer_bytes + magic.size();
+constexpr std::uint64_t data_end_bytes = record_head_bytes + 4;
 
 /// The footer of a properly closed file.
-Result<std::optional<McapFooter>> read_footer(FileWindow& window) {
-  using Found = std::optional<McapFooter>;
-  if (window.size() < mcap_magic.size() + end_bytes) return Found();
+Result<std::optional<Footer>> read_footer(FileWindow& window) {
+  using Found = std::optional<Footer>;
+  if (window.size() < magic.size() + end_bytes) return Found();
   const auto end = window.view(window.size() - end_bytes, end_bytes);
   if (!end) return end.error();
-  McapFields fields(*end);
-  const bool is_footer = static_cast<McapOp>(fields.u8()) == McapOp::footer &&
-                         fields.u64() == mcap_footer_bytes && end->ends_with(mcap_magic);
+  Fields fields(*end);
+  const bool is_footer = static_cast<Op>(fields.u8()) == Op::footer &&
+                         fields.u64() == footer_bytes && end->ends_with(magic);
   if (!is_footer) return Found();
-  return Found(mcap_footer(fields.take(mcap_footer_bytes)));
+  return Found(parse_footer(fields.take(footer_bytes)));
 }
 
 /// nullopt if a record is truncated or the messages are not counted.
-std::optional<McapSummary> parsed_summary(std::string_view records) {
-  McapSummary out;
+std::optional<Summary> parsed_summary(std::string_view records) {
+  Summary out;
   bool is_counted = false;
-  for (McapFields fields(records); fields.left() > 0;) {
-    const auto op = static_cast<McapOp>(fields.u8());
+  for (Fields fields(records); fields.left() > 0;) {
+    const auto op = static_cast<Op>(fields.u8());
     const std::string_view content = fields.take(fields.u64());
     if (!fields.is_whole()) return std::nullopt;
-    if (op == McapOp::chunk_index) {
-      McapFields index(content);
+    if (op == Op::chunk_index) {
+      Fields index(content);
       index.take(16);
       out.chunk_starts.push_back(index.u64());
     }
-    if (op == McapOp::schema)
-      if (auto schema = mcap_schema(content)) out.schemas.push_back(std::move(*schema));
-    if (op == McapOp::channel)
-      if (auto channel = mcap_channel(content)) out.channels.push_back(std::move(*channel));
-    if (op != McapOp::statistics) continue;
-    const auto statistics = mcap_statistics(content);
+    if (op == Op::schema)
+      if (auto schema = parse_schema(content)) out.schemas.push_back(std::move(*schema));
+    if (op == Op::channel)
+      if (auto channel = parse_channel(content)) out.channels.push_back(std::move(*channel));
+    if (op != Op::statistics) continue;
+    const auto statistics = parse_statistics(content);
     if (!statistics) return std::nullopt;
     out.messages = statistics->of_channels;
     std::uint64_t sum = 0;
@@ -56,15 +56,14 @@ std::optional<McapSummary> parsed_summary(std::string_view records) {
 Result<bool> has_data_checksum(FileWindow& window, std::uint64_t data_end) {
   const auto record = window.view(data_end, data_end_bytes);
   if (!record) return record.error();
-  McapFields fields(*record);
-  return static_cast<McapOp>(fields.u8()) == McapOp::data_end && fields.u64() >= 4 &&
-         fields.u32() != 0;
+  Fields fields(*record);
+  return static_cast<Op>(fields.u8()) == Op::data_end && fields.u64() >= 4 && fields.u32() != 0;
 }
 
 }  // namespace
 
-Result<std::optional<McapSummary>> read_mcap_summary(FileWindow& window, std::vector<Note>& notes) {
-  using Found = std::optional<McapSummary>;
+Result<std::optional<Summary>> read_summary(FileWindow& window, std::vector<Note>& notes) {
+  using Found = std::optional<Summary>;
   const auto footer = read_footer(window);
   if (!footer) return footer.error();
   if (!*footer || (*footer)->summary_start == 0) return Found();
@@ -76,10 +75,10 @@ Result<std::optional<McapSummary>> read_mcap_summary(FileWindow& window, std::ve
     return Found();
   };
   constexpr std::uint64_t most_bytes = std::uint64_t{256} << 20;
-  if (start < mcap_magic.size() + data_end_bytes || start > end || end - start > most_bytes)
+  if (start < magic.size() + data_end_bytes || start > end || end - start > most_bytes)
     return refused("begins where it cannot");
   // The checksum covers the footer up to the checksum itself.
-  const std::uint64_t checked = end - start + mcap_record_head + mcap_footer_bytes - 4;
+  const std::uint64_t checked = end - start + record_head_bytes + footer_bytes - 4;
   const auto bytes = window.view(start, checked);
   if (!bytes) return bytes.error();
   if ((*footer)->summary_crc != 0 && crc32(0, *bytes) != (*footer)->summary_crc)
@@ -92,4 +91,4 @@ Result<std::optional<McapSummary>> read_mcap_summary(FileWindow& window, std::ve
   return summary;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

@@ -10,14 +10,14 @@
 #include "proofmass/io/shown_text.hpp"
 #include "proofmass/io/text/wording.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
 /// Use of a channel's messages.
 enum class Use : unsigned char { unknown, known, event, read };
 
 /// Text of a metadata record for a note: its short texts.
-std::string words_of(const McapMetadata& metadata) {
+std::string words_of(const Metadata& metadata) {
   constexpr std::size_t longest = 300;
   std::string words = fmt::format("metadata \"{}\":", shown(metadata.name));
   for (const auto& [key, value] : metadata.values) {
@@ -28,12 +28,12 @@ std::string words_of(const McapMetadata& metadata) {
   return words;
 }
 
-class McapTable final : public TableReader {
+class Table final : public TableReader {
  public:
-  McapTable(std::shared_ptr<const RandomBytes> bytes,
-            McapTableSpec spec,
-            McapWalkHints hints,
-            std::unique_ptr<McapDecoder> decoder)
+  Table(std::shared_ptr<const RandomBytes> bytes,
+        TableSpec spec,
+        WalkHints hints,
+        std::unique_ptr<Decoder> decoder)
       : bytes_(std::move(bytes)),
         channels_(),
         walk_(bytes_, std::move(hints)),
@@ -91,16 +91,16 @@ class McapTable final : public TableReader {
  private:
   /// Advances to the next message with rows; false at the end.
   [[nodiscard]] Result<bool> advance() {
-    McapRecord record;
+    Record record;
     for (;;) {
       const auto found = walk_.next(record);
       if (!found) return found.error();
       if (!*found) return false;
-      if (record.op != McapOp::message) {
+      if (record.op != Op::message) {
         report(record);
         continue;
       }
-      const auto message = mcap_message(record.content);
+      const auto message = parse_message(record.content);
       if (!message) {
         refuse(record, "is shorter than a message is");
         continue;
@@ -117,31 +117,31 @@ class McapTable final : public TableReader {
     }
   }
 
-  void refuse(const McapRecord& record, const std::string& why) {
+  void refuse(const Record& record, const std::string& why) {
     if (refused_++ > 0) return;
     refused_at_ = record.offset;
     refusal_ = why;
   }
 
   /// Notes on other records.
-  void report(const McapRecord& record) {
+  void report(const Record& record) {
     constexpr std::size_t most_listed = 8;
-    if (record.op == McapOp::attachment) take_attachment(record.content);
-    if (record.op != McapOp::metadata || beside_.size() >= most_listed) return;
-    const auto metadata = mcap_metadata(record.content);
+    if (record.op == Op::attachment) take_attachment(record.content);
+    if (record.op != Op::metadata || beside_.size() >= most_listed) return;
+    const auto metadata = parse_metadata(record.content);
     if (metadata && !metadata->values.empty())
       beside_.push_back({Severity::info, words_of(*metadata)});
   }
 
   void take_attachment(std::string_view content) {
-    const auto head = mcap_attachment_head(content);
+    const auto head = parse_attachment_head(content);
     if (!head) return;
     constexpr std::size_t most_listed = 8;
-    const auto data = mcap_attachment_data(content, *head);
+    const auto data = attachment_data(content, *head);
     // A record larger than the limit is held only in part.
     const bool is_cut = content.size() < head->head_bytes + head->bytes;
     const bool is_damaged = !data && !is_cut;
-    const bool are_labels = head->name == mcap_labels_name && labels_ && labels_->empty();
+    const bool are_labels = head->name == labels_name && labels_ && labels_->empty();
     if (are_labels && data) {
       *labels_ = *data;
     } else if (beside_.size() < most_listed) {
@@ -153,8 +153,8 @@ class McapTable final : public TableReader {
 
   std::shared_ptr<const RandomBytes> bytes_;
   std::array<Use, 65'536> channels_;
-  McapWalk walk_;
-  std::unique_ptr<McapDecoder> decoder_;
+  Walk walk_;
+  std::unique_ptr<Decoder> decoder_;
   std::shared_ptr<std::string> labels_;
   TableHead head_;
   std::size_t rows_ = 0;       ///< in the message
@@ -163,19 +163,19 @@ class McapTable final : public TableReader {
   std::uint64_t refused_ = 0;
   std::uint64_t refused_at_ = 0;
   std::string refusal_;
-  McapEvents events_;
+  Events events_;
   std::vector<Note> beside_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<TableReader>> mcap_table(std::shared_ptr<const RandomBytes> bytes,
-                                                McapTableSpec spec,
-                                                McapWalkHints hints) {
-  auto decoder = mcap_decoder(spec.topic);
+Result<std::unique_ptr<TableReader>> open_table(std::shared_ptr<const RandomBytes> bytes,
+                                                TableSpec spec,
+                                                WalkHints hints) {
+  auto decoder = decoder_of(spec.topic);
   if (!decoder) return decoder.error();
-  return std::unique_ptr<TableReader>(std::make_unique<McapTable>(
+  return std::unique_ptr<TableReader>(std::make_unique<Table>(
       std::move(bytes), std::move(spec), std::move(hints), std::move(decoder).value()));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

@@ -10,11 +10,11 @@
 #include "proofmass/io/mcap/decoder.hpp"
 #include "proofmass/io/table_reader.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
 /// A topic of an MCAP file, read as a table.
-struct McapTableSpec {
-  McapTopic topic;
+struct TableSpec {
+  Topic topic;
   std::set<std::uint16_t> channels;  ///< all that have this topic, encoding and schema
   std::optional<std::uint64_t> rows;
   bool rows_are_guessed = false;  ///< from the first message; others may have another length
@@ -27,8 +27,8 @@ struct McapTableSpec {
 };
 
 /// Reads the rows of a topic. Damaged messages are skipped and reported.
-/// Errors: those of mcap_decoder().
-[[nodiscard]] Result<std::unique_ptr<TableReader>> mcap_table(
-    std::shared_ptr<const RandomBytes> bytes, McapTableSpec spec, McapWalkHints hints);
+/// Errors: those of decoder_of().
+[[nodiscard]] Result<std::unique_ptr<TableReader>> open_table(
+    std::shared_ptr<const RandomBytes> bytes, TableSpec spec, WalkHints hints);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

@@ -9,21 +9,21 @@
 #include "proofmass/io/bytes/crc32.hpp"
 #include "proofmass/io/shown_text.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
-struct McapUnpacker::Contexts {
+struct Unpacker::Contexts {
   ZSTD_DCtx* zstd = nullptr;
   LZ4F_dctx* lz4 = nullptr;
 };
 
-McapUnpacker::McapUnpacker() : contexts_(std::make_unique<Contexts>()) {}
+Unpacker::Unpacker() : contexts_(std::make_unique<Contexts>()) {}
 
-McapUnpacker::~McapUnpacker() {
+Unpacker::~Unpacker() {
   ZSTD_freeDCtx(contexts_->zstd);
   LZ4F_freeDecompressionContext(contexts_->lz4);
 }
 
-char* McapUnpacker::room_for(std::size_t bytes) {
+char* Unpacker::room_for(std::size_t bytes) {
   if (bytes > room_bytes_) {
     // Not initialised: pages without decompressed data are never allocated.
     room_ = std::make_unique_for_overwrite<char[]>(bytes);
@@ -32,7 +32,7 @@ char* McapUnpacker::room_for(std::size_t bytes) {
   return room_.get();
 }
 
-Result<std::string_view> McapUnpacker::unzstd(std::size_t unpacked, std::string_view packed) {
+Result<std::string_view> Unpacker::unzstd(std::size_t unpacked, std::string_view packed) {
   if (contexts_->zstd == nullptr) contexts_->zstd = ZSTD_createDCtx();
   PM_EXPECTS(contexts_->zstd != nullptr);
   char* room = room_for(unpacked);
@@ -44,7 +44,7 @@ Result<std::string_view> McapUnpacker::unzstd(std::size_t unpacked, std::string_
   return std::string_view(room, count);
 }
 
-Result<std::string_view> McapUnpacker::unlz4(std::size_t unpacked, std::string_view packed) {
+Result<std::string_view> Unpacker::unlz4(std::size_t unpacked, std::string_view packed) {
   if (contexts_->lz4 == nullptr)
     PM_EXPECTS(LZ4F_isError(LZ4F_createDecompressionContext(&contexts_->lz4, LZ4F_VERSION)) == 0u);
   LZ4F_resetDecompressionContext(contexts_->lz4);
@@ -68,10 +68,10 @@ Result<std::string_view> McapUnpacker::unlz4(std::size_t unpacked, std::string_v
   return std::string_view(room, filled);
 }
 
-Result<std::string_view> McapUnpacker::unpack(const McapChunkHead& head, std::string_view packed) {
+Result<std::string_view> Unpacker::unpack(const ChunkHead& head, std::string_view packed) {
   // A zstd block of 4 bytes expands to at most 128 KiB; lz4 to at most 255 bytes per byte.
   const std::uint64_t most_a_byte = head.compression.empty() ? 1 : std::uint64_t{1} << 15;
-  if (head.unpacked_bytes > mcap_most_unpacked ||
+  if (head.unpacked_bytes > most_unpacked ||
       head.unpacked_bytes > (packed.size() + 16) * most_a_byte)
     return Error{Errc::corrupt, fmt::format("it says that its {} bytes unpack to {}", packed.size(),
                                             head.unpacked_bytes)};
@@ -94,4 +94,4 @@ Result<std::string_view> McapUnpacker::unpack(const McapChunkHead& head, std::st
   return unpacked;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

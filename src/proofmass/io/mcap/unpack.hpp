@@ -6,24 +6,24 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/io/mcap/records.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 
 /// Chunks with a larger decompressed size are not read.
-inline constexpr std::uint64_t mcap_most_unpacked = std::uint64_t{1} << 30;
+inline constexpr std::uint64_t most_unpacked = std::uint64_t{1} << 30;
 
 /// Decompresses the records of chunks into a reusable buffer.
-class McapUnpacker {
+class Unpacker {
  public:
-  McapUnpacker();
-  McapUnpacker(const McapUnpacker&) = delete;
-  McapUnpacker& operator=(const McapUnpacker&) = delete;
-  ~McapUnpacker();
+  Unpacker();
+  Unpacker(const Unpacker&) = delete;
+  Unpacker& operator=(const Unpacker&) = delete;
+  ~Unpacker();
 
   /// The records before compression (none, lz4, zstd), with their checksum verified. Uncompressed
   /// data are returned directly; otherwise the result is valid until the next call.
   /// Errors: unsupported (another compression), corrupt (damaged; a size other than stated, a wrong
   /// checksum). Never allocates more than the given bytes can decompress to.
-  [[nodiscard]] Result<std::string_view> unpack(const McapChunkHead& head, std::string_view packed);
+  [[nodiscard]] Result<std::string_view> unpack(const ChunkHead& head, std::string_view packed);
 
  private:
   struct Contexts;
@@ -37,4 +37,4 @@ class McapUnpacker {
   std::size_t room_bytes_ = 0;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

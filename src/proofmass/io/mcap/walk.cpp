@@ -5,29 +5,29 @@
 
 #include "proofmass/io/bytes/crc32.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
 constexpr std::size_t most_notes = 6;
 
-bool is_wanted(McapOp op) {
-  return op == McapOp::header || op == McapOp::schema || op == McapOp::channel ||
-         op == McapOp::message || op == McapOp::attachment || op == McapOp::metadata;
+bool is_wanted(Op op) {
+  return op == Op::header || op == Op::schema || op == Op::channel || op == Op::message ||
+         op == Op::attachment || op == Op::metadata;
 }
 
 /// Maximum size of a record's content held in memory.
-std::uint64_t most_held(McapOp op) {
+std::uint64_t most_held(Op op) {
   constexpr std::uint64_t mebibyte = std::uint64_t{1} << 20;
-  if (op == McapOp::chunk || op == McapOp::message) return mcap_most_unpacked + mebibyte;
+  if (op == Op::chunk || op == Op::message) return most_unpacked + mebibyte;
   return 16 * mebibyte;
 }
 
 }  // namespace
 
-McapWalk::McapWalk(std::shared_ptr<const RandomBytes> bytes, McapWalkHints hints)
+Walk::Walk(std::shared_ptr<const RandomBytes> bytes, WalkHints hints)
     : window_(std::move(bytes)), hints_(std::move(hints)) {}
 
-Result<bool> McapWalk::next(McapRecord& record) {
+Result<bool> Walk::next(Record& record) {
   for (;;) {
     if (!in_chunk_.empty()) {
       if (next_in_chunk(record)) return true;
@@ -41,26 +41,26 @@ Result<bool> McapWalk::next(McapRecord& record) {
   }
 }
 
-bool McapWalk::next_in_chunk(McapRecord& record) {
-  McapFields fields(in_chunk_);
-  const auto op = static_cast<McapOp>(fields.u8());
+bool Walk::next_in_chunk(Record& record) {
+  Fields fields(in_chunk_);
+  const auto op = static_cast<Op>(fields.u8());
   const std::uint64_t length = fields.u64();
   const std::string_view content = fields.take(length);
   if (!fields.is_whole()) {
     note(Severity::bad, fmt::format("the chunk at byte {} breaks off within {}: the records before "
                                     "it are kept",
-                                    chunk_at_, mcap_record_name(op)));
+                                    chunk_at_, record_name(op)));
     in_chunk_ = {};
     return false;
   }
   in_chunk_ = in_chunk_.substr(in_chunk_.size() - fields.left());
   record = {op, content, chunk_at_};
-  return op == McapOp::schema || op == McapOp::channel || op == McapOp::message;
+  return op == Op::schema || op == Op::channel || op == Op::message;
 }
 
 /// Reads one record of the file; false if it is not of a requested type.
-Result<bool> McapWalk::step(McapRecord& record) {
-  const auto head = window_.view(position_, mcap_record_head);
+Result<bool> Walk::step(Record& record) {
+  const auto head = window_.view(position_, record_head_bytes);
   if (!head) return head.error();
   if (head->empty()) {
     note(Severity::bad,
@@ -70,38 +70,38 @@ Result<bool> McapWalk::step(McapRecord& record) {
     ended_ = true;
     return false;
   }
-  McapFields fields(*head);
-  record = {static_cast<McapOp>(fields.u8()), {}, position_};
+  Fields fields(*head);
+  record = {static_cast<Op>(fields.u8()), {}, position_};
   const std::uint64_t length = fields.u64();
   if (!fields.is_whole()) return broken_off("within the head of a record");
-  if (record.op == McapOp{0}) return broken_off("where a record should begin there is a zero");
-  const std::uint64_t left = window_.size() - position_ - mcap_record_head;
+  if (record.op == Op{0}) return broken_off("where a record should begin there is a zero");
+  const std::uint64_t left = window_.size() - position_ - record_head_bytes;
   if (length > left)
     return broken_off(fmt::format("within {}, of whose {} bytes {} are there",
-                                  mcap_record_name(record.op), length, left));
+                                  record_name(record.op), length, left));
   const auto believable = is_believable(record.op, length);
   if (!believable) return believable.error();
   if (!*believable)
     return broken_off(
-        fmt::format("where {} of {} bytes cannot be", mcap_record_name(record.op), length));
+        fmt::format("where {} of {} bytes cannot be", record_name(record.op), length));
   // If its length is wrong, a chunk may begin within it.
   search_from_ = position_ + 1;
   return enter(length, record);
 }
 
-Result<bool> McapWalk::enter(std::uint64_t length, McapRecord& record) {
-  const std::uint64_t content_at = position_ + mcap_record_head;
-  if (record.op == McapOp::footer || record.op == McapOp::data_end) {
+Result<bool> Walk::enter(std::uint64_t length, Record& record) {
+  const std::uint64_t content_at = position_ + record_head_bytes;
+  if (record.op == Op::footer || record.op == Op::data_end) {
     const auto content = window_.view(content_at, std::min<std::uint64_t>(length, 4));
     if (!content) return content.error();
     const std::string found(*content);
-    if (record.op == McapOp::data_end)
+    if (record.op == Op::data_end)
       if (const Status closed = close(found); !closed) return closed.error();
     counts_.is_closed = true;
     ended_ = true;
     return false;
   }
-  if (record.op == McapOp::chunk) {
+  if (record.op == Op::chunk) {
     const auto entered = enter_chunk(length);
     if (!entered) return entered.error();
     position_ = *entered;
@@ -109,9 +109,9 @@ Result<bool> McapWalk::enter(std::uint64_t length, McapRecord& record) {
   }
   position_ = content_at + length;
   if (!is_wanted(record.op)) return false;
-  if (length > most_held(record.op) && record.op != McapOp::attachment) {
+  if (length > most_held(record.op) && record.op != Op::attachment) {
     note(Severity::bad, fmt::format("byte {}: {} of {} bytes is more than is read: skipped",
-                                    record.offset, mcap_record_name(record.op), length));
+                                    record.offset, record_name(record.op), length));
     return false;
   }
   const auto content = window_.view(content_at, std::min(length, most_held(record.op)));
@@ -121,20 +121,20 @@ Result<bool> McapWalk::enter(std::uint64_t length, McapRecord& record) {
 }
 
 /// Returns the position of the record after the chunk.
-Result<std::uint64_t> McapWalk::enter_chunk(std::uint64_t length) {
+Result<std::uint64_t> Walk::enter_chunk(std::uint64_t length) {
   chunk_at_ = position_;
   constexpr std::uint64_t most_head_bytes = 4096;
-  const std::uint64_t content_at = position_ + mcap_record_head;
+  const std::uint64_t content_at = position_ + record_head_bytes;
   const std::uint64_t end = content_at + length;
   const auto start = window_.view(content_at, std::min(length, most_head_bytes));
   if (!start) return start.error();
-  const auto head = mcap_chunk_head(*start);
+  const auto head = parse_chunk_head(*start);
   if (!head || head->packed_bytes > length - head->head_bytes)
     return lose_chunk({}, end, "its head is damaged");
-  if (head->packed_bytes > mcap_most_unpacked || head->unpacked_bytes > mcap_most_unpacked)
+  if (head->packed_bytes > most_unpacked || head->unpacked_bytes > most_unpacked)
     return lose_chunk(*head, end, "it is larger than 1 GiB");
   // The whole record, so that the checksum of the data section finds it in the window.
-  const std::uint64_t before = mcap_record_head + head->head_bytes;
+  const std::uint64_t before = record_head_bytes + head->head_bytes;
   const auto whole = window_.view(position_, before + head->packed_bytes);
   if (!whole) return whole.error();
   const auto unpacked = unpacker_.unpack(*head, whole->substr(std::min(before, whole->size())));
@@ -147,7 +147,7 @@ Result<std::uint64_t> McapWalk::enter_chunk(std::uint64_t length) {
 }
 
 /// Updates the checksum of the data section; the bytes are still in the window.
-Status McapWalk::pass(std::uint64_t end) {
+Status Walk::pass(std::uint64_t end) {
   constexpr std::uint64_t piece = std::uint64_t{1} << 20;
   while (hints_.check_data && passed_ < end) {
     const auto bytes = window_.view(passed_, std::min(end - passed_, piece));
@@ -159,8 +159,8 @@ Status McapWalk::pass(std::uint64_t end) {
   return Done{};
 }
 
-Status McapWalk::close(std::string_view data_end) {
-  const std::uint32_t expected = McapFields(data_end).u32();
+Status Walk::close(std::string_view data_end) {
+  const std::uint32_t expected = Fields(data_end).u32();
   if (!hints_.check_data || expected == 0 || counts_.damaged_chunks > 0) return Done{};
   if (const Status passed = pass(position_); !passed) return passed.error();
   if (data_crc_ != expected)
@@ -170,11 +170,11 @@ Status McapWalk::close(std::string_view data_end) {
   return Done{};
 }
 
-void McapWalk::note(Severity severity, std::string text) {
+void Walk::note(Severity severity, std::string text) {
   if (notes_.size() < most_notes) notes_.push_back({severity, std::move(text)});
 }
 
-std::vector<Note> McapWalk::notes() const {
+std::vector<Note> Walk::notes() const {
   std::vector<Note> notes = notes_;
   if (counts_.damaged_chunks > 1)
     notes.push_back(
@@ -182,9 +182,9 @@ std::vector<Note> McapWalk::notes() const {
   return notes;
 }
 
-double McapWalk::fraction_read() const {
+double Walk::fraction_read() const {
   return static_cast<double>(std::min(position_, window_.size())) /
          static_cast<double>(std::max<std::uint64_t>(window_.size(), 1));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

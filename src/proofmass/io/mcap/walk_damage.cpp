@@ -4,7 +4,7 @@
 #include "proofmass/io/mcap/walk.hpp"
 
 // Damaged bytes: the loss, and where the walk continues.
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
 /// "1700000000.125 s"
@@ -16,7 +16,7 @@ std::string seconds(std::uint64_t ns) {
 
 /// Counts bytes as lost, each once: where a whole chunk begins within what was skipped, the walk
 /// goes back.
-void McapWalk::skip(std::uint64_t from, std::uint64_t to) {
+void Walk::skip(std::uint64_t from, std::uint64_t to) {
   if (to < skipped_to_)
     counts_.skipped -= std::min(counts_.skipped, skipped_to_ - to);
   else
@@ -25,7 +25,7 @@ void McapWalk::skip(std::uint64_t from, std::uint64_t to) {
 }
 
 /// Continues after damage, if possible; there is no record yet.
-Result<bool> McapWalk::broken_off(const std::string& why) {
+Result<bool> Walk::broken_off(const std::string& why) {
   const auto listed = std::ranges::upper_bound(hints_.chunk_starts, position_);
   std::uint64_t next = listed == hints_.chunk_starts.end() ? window_.size() : *listed;
   if (hints_.search) {
@@ -54,35 +54,34 @@ Result<bool> McapWalk::broken_off(const std::string& why) {
 
 /// True if a plausible record header begins a record: checked only if the walk can continue without
 /// it.
-Result<bool> McapWalk::is_believable(McapOp op, std::uint64_t length) {
-  if (!hints_.search || op == McapOp::chunk) return true;
-  const std::uint64_t end = position_ + mcap_record_head + length;
+Result<bool> Walk::is_believable(Op op, std::uint64_t length) {
+  if (!hints_.search || op == Op::chunk) return true;
+  const std::uint64_t end = position_ + record_head_bytes + length;
   constexpr std::uint64_t longest_data_end = 64;
-  if (op == McapOp::data_end) return length <= longest_data_end;
-  if (op == McapOp::footer) return end + mcap_magic.size() == window_.size();
-  return op < McapOp::data_end ? Result(true) : is_record_at(end);
+  if (op == Op::data_end) return length <= longest_data_end;
+  if (op == Op::footer) return end + magic.size() == window_.size();
+  return op < Op::data_end ? Result(true) : is_record_at(end);
 }
 
 /// True if a record can begin there, or the file ends.
-Result<bool> McapWalk::is_record_at(std::uint64_t at) {
+Result<bool> Walk::is_record_at(std::uint64_t at) {
   if (at == window_.size()) return true;
   const auto next = window_.view(at, 1);
   if (!next) return next.error();
   const auto kind = static_cast<unsigned char>(next->empty() ? 0 : next->front());
   constexpr unsigned char first_private = 0x80;
-  return (kind > 0 && kind <= static_cast<unsigned char>(McapOp::data_end)) ||
-         kind >= first_private;
+  return (kind > 0 && kind <= static_cast<unsigned char>(Op::data_end)) || kind >= first_private;
 }
 
 /// The first intact chunk from byte `from`; the file's end if there is none.
-Result<std::uint64_t> McapWalk::next_chunk(std::uint64_t from) {
+Result<std::uint64_t> Walk::next_chunk(std::uint64_t from) {
   constexpr std::uint64_t piece = std::uint64_t{64} << 10;
   // Each attempt costs the checksum of a chunk: malicious bytes would make the search endless.
   const std::uint64_t most_searched = 8 * window_.size() + (std::uint64_t{64} << 20);
   for (std::uint64_t at = from; at < window_.size() && searched_ < most_searched;) {
     const auto bytes = window_.view(at, piece);
     if (!bytes) return bytes.error();
-    const std::size_t found = bytes->find(static_cast<char>(McapOp::chunk));
+    const std::size_t found = bytes->find(static_cast<char>(Op::chunk));
     if (found == std::string_view::npos) {
       at += bytes->size();
       continue;
@@ -96,19 +95,19 @@ Result<std::uint64_t> McapWalk::next_chunk(std::uint64_t from) {
   return window_.size();
 }
 
-Result<bool> McapWalk::is_chunk(std::uint64_t at) {
+Result<bool> Walk::is_chunk(std::uint64_t at) {
   constexpr std::uint64_t most_head_bytes = 128;
-  const auto start = window_.view(at, mcap_record_head + most_head_bytes);
+  const auto start = window_.view(at, record_head_bytes + most_head_bytes);
   if (!start) return start.error();
-  McapFields fields(*start);
+  Fields fields(*start);
   fields.u8();
   const std::uint64_t length = fields.u64();
-  const auto head = mcap_chunk_head(start->substr(std::min(start->size(), mcap_record_head)));
-  const bool is_sound = fields.is_whole() && head && head->packed_bytes <= mcap_most_unpacked &&
+  const auto head = parse_chunk_head(start->substr(std::min(start->size(), record_head_bytes)));
+  const bool is_sound = fields.is_whole() && head && head->packed_bytes <= most_unpacked &&
                         head->head_bytes + head->packed_bytes == length &&
-                        length <= window_.size() - at - mcap_record_head && head->packed_bytes > 0;
+                        length <= window_.size() - at - record_head_bytes && head->packed_bytes > 0;
   if (!is_sound) return false;
-  const std::uint64_t before = mcap_record_head + head->head_bytes;
+  const std::uint64_t before = record_head_bytes + head->head_bytes;
   const auto whole = window_.view(at, before + head->packed_bytes);
   if (!whole) return whole.error();
   searched_ += head->packed_bytes;
@@ -116,9 +115,9 @@ Result<bool> McapWalk::is_chunk(std::uint64_t at) {
 }
 
 /// Returns where to continue: after it, or at the next chunk if its length is invalid too.
-Result<std::uint64_t> McapWalk::lose_chunk(const McapChunkHead& head,
-                                           std::uint64_t end,
-                                           const std::string& why) {
+Result<std::uint64_t> Walk::lose_chunk(const ChunkHead& head,
+                                       std::uint64_t end,
+                                       const std::string& why) {
   ++counts_.damaged_chunks;
   constexpr std::uint64_t usual_ratio = 64;
   lost_bytes_ += std::min(head.unpacked_bytes, usual_ratio * head.packed_bytes);
@@ -136,4 +135,4 @@ Result<std::uint64_t> McapWalk::lose_chunk(const McapChunkHead& head,
   return end;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

@@ -7,7 +7,7 @@
 #include "proofmass/io/mcap/recording.hpp"
 #include "proofmass/io/reading/recording_writers.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::mcap {
 namespace {
 
 /// Rows per message: 64 KiB, but at most one second.
@@ -20,9 +20,9 @@ std::size_t rows_a_message(const WriterHead& head) {
   return std::min(fitting, static_cast<std::size_t>(std::clamp(rate_hz, 1.0, 1e9)));
 }
 
-class McapWriter final : public RecordingWriter {
+class Writer final : public RecordingWriter {
  public:
-  McapWriter(std::unique_ptr<OutputFile> file, const WriterHead& head, const WriteOptions& options)
+  Writer(std::unique_ptr<OutputFile> file, const WriterHead& head, const WriteOptions& options)
       : file_(std::move(file)),
         start_ns_(head.recording.time.start_ns.value_or(0)),
         rate_hz_(head.recording.time.rate_hz),
@@ -38,10 +38,10 @@ class McapWriter final : public RecordingWriter {
     if (!options.sensor_file.empty())
       mcap_.add_attachment("sensor.toml", "application/toml", log_ns(0, 0.0), options.sensor_file);
     const TimeBase& time = head.recording.time;
-    McapSamplesTopic topic{.name = "recording",
-                           .columns = head.recording.channels,
-                           .has_stamps = head.has_stamps,
-                           .start_ns = time.start_ns};
+    SamplesTopic topic{.name = "recording",
+                       .columns = head.recording.channels,
+                       .has_stamps = head.has_stamps,
+                       .start_ns = time.start_ns};
     if (!head.has_stamps && time.rate_hz > 0.0) topic.rate_hz = time.rate_hz;
     topic_ = mcap_.add_samples_topic(topic);
   }
@@ -75,8 +75,8 @@ class McapWriter final : public RecordingWriter {
 
  private:
   [[nodiscard]] std::uint64_t log_ns(std::uint64_t sample, double stamp_s) const {
-    if (has_stamps_) return mcap_log_ns(start_ns_, stamp_s);
-    return mcap_log_ns(start_ns_, rate_hz_ > 0.0 ? static_cast<double>(sample) / rate_hz_ : 0.0);
+    if (has_stamps_) return log_time_ns(start_ns_, stamp_s);
+    return log_time_ns(start_ns_, rate_hz_ > 0.0 ? static_cast<double>(sample) / rate_hz_ : 0.0);
   }
 
   [[nodiscard]] Status flush() {
@@ -94,28 +94,27 @@ class McapWriter final : public RecordingWriter {
   [[nodiscard]] Status put_bytes() { return file_->append(mcap_.take_bytes()); }
 
   std::unique_ptr<OutputFile> file_;
-  McapRecording mcap_;
+  RecordingEncoder mcap_;
   std::int64_t start_ns_;
   double rate_hz_;
   bool has_stamps_;
   std::size_t rows_a_message_;
-  McapRecording::Topic topic_ = 0;
+  RecordingEncoder::Topic topic_ = 0;
   std::vector<std::vector<double>> columns_;  ///< columns of the next message; the stamps first
   std::uint64_t written_ = 0;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<RecordingWriter>> mcap_writer(std::unique_ptr<OutputFile> file,
-                                                     const WriterHead& head,
-                                                     const WriteOptions& options) {
+Result<std::unique_ptr<RecordingWriter>> create(std::unique_ptr<OutputFile> file,
+                                                const WriterHead& head,
+                                                const WriteOptions& options) {
   if (head.recording.channels.empty())
     return Error{Errc::too_few_samples, "there is no channel to write"};
   constexpr std::size_t most_channels = 0xFFFF;
   if (head.recording.channels.size() > most_channels)
     return Error{Errc::unsupported, "has more channels than a block of samples counts (65535)"};
-  return std::unique_ptr<RecordingWriter>(
-      std::make_unique<McapWriter>(std::move(file), head, options));
+  return std::unique_ptr<RecordingWriter>(std::make_unique<Writer>(std::move(file), head, options));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::mcap

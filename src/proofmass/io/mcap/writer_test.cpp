@@ -12,7 +12,7 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/written_test_support.hpp"
 
-namespace proofmass::io::mcap_writer_test {
+namespace proofmass::io::mcap::writer_test {
 namespace {
 
 /// A file in memory.
@@ -41,7 +41,7 @@ std::string written(const Recording& recording,
                     const WriteOptions& options = {}) {
   std::string bytes;
   const bool has_stamps = !recording.time.is_uniform();
-  auto opened = mcap_writer(std::make_unique<MemoryFile>(bytes), {recording, has_stamps}, options);
+  auto opened = create(std::make_unique<MemoryFile>(bytes), {recording, has_stamps}, options);
   EXPECT_TRUE(opened.has_value());
   EXPECT_TRUE(write_in_pieces(**opened, recording, rows).has_value());
   return bytes;
@@ -207,4 +207,4 @@ TEST(McapSamples, FillsNoGapThatNothingStandsFor) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::mcap_writer_test
+}  // namespace proofmass::io::mcap::writer_test

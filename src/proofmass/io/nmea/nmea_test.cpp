@@ -6,14 +6,14 @@
 #include "proofmass/io/nmea/reader.hpp"
 #include "proofmass/io/test_support.hpp"
 
-namespace proofmass::io::nmea_test {
+namespace proofmass::io::nmea::nmea_test {
 namespace {
 
 const std::string gga = "$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47";
 const std::string rmc = "$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A";
 
 TEST(Nmea, ReadsTheSentenceOfTheBook) {
-  const auto fix = parse_nmea(gga, NmeaKind::gga);
+  const auto fix = parse(gga, Kind::gga);
   ASSERT_TRUE(fix);
   EXPECT_DOUBLE_EQ(fix->time_of_day_s, 12 * 3600 + 35 * 60 + 19);
   EXPECT_NEAR(fix->latitude_deg, 48.1173, 1e-9);
@@ -25,7 +25,7 @@ TEST(Nmea, ReadsTheSentenceOfTheBook) {
 }
 
 TEST(Nmea, ReadsTheMinimumSentence) {
-  const auto fix = parse_nmea(rmc, NmeaKind::rmc);
+  const auto fix = parse(rmc, Kind::rmc);
   ASSERT_TRUE(fix);
   EXPECT_NEAR(fix->latitude_deg, 48.1173, 1e-9);
   EXPECT_TRUE(std::isnan(fix->height_m));
@@ -33,7 +33,7 @@ TEST(Nmea, ReadsTheMinimumSentence) {
 
 TEST(Nmea, SouthAndWestAreNegative) {
   const auto fix =
-      parse_nmea("$GNGGA,000001.50,3345.6000,S,15112.0000,W,4,12,0.6,30.0,M,,M,,", NmeaKind::gga);
+      parse("$GNGGA,000001.50,3345.6000,S,15112.0000,W,4,12,0.6,30.0,M,,M,,", Kind::gga);
   ASSERT_TRUE(fix);
   EXPECT_NEAR(fix->latitude_deg, -33.76, 1e-9);
   EXPECT_NEAR(fix->longitude_deg, -151.2, 1e-9);
@@ -43,11 +43,11 @@ TEST(Nmea, SouthAndWestAreNegative) {
 TEST(Nmea, RefusesAWrongChecksum) {
   std::string spoilt = gga;
   spoilt[20] = '9';
-  EXPECT_FALSE(parse_nmea(spoilt, NmeaKind::gga));
+  EXPECT_FALSE(parse(spoilt, Kind::gga));
 }
 
 TEST(Nmea, AFixThatIsNotValidHasNoPosition) {
-  const auto fix = parse_nmea("$GPGGA,123519,,,,,0,00,,,M,,M,,*6B", NmeaKind::gga);
+  const auto fix = parse("$GPGGA,123519,,,,,0,00,,,M,,M,,*6B", Kind::gga);
   ASSERT_TRUE(fix);
   EXPECT_TRUE(std::isnan(fix->latitude_deg));
   EXPECT_EQ(fix->quality, 0.0);
@@ -81,4 +81,4 @@ TEST(Nmea, ATruncationAtAnyByteIsReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::nmea_test
+}  // namespace proofmass::io::nmea::nmea_test

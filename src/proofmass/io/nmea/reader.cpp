@@ -14,7 +14,7 @@
 #include "proofmass/io/table_reader.hpp"
 #include "proofmass/io/text/line_reader.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::nmea {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -76,20 +76,20 @@ std::optional<double> degrees(std::string_view text, std::string_view hemisphere
   return std::nullopt;
 }
 
-bool is_kind(std::string_view sentence, NmeaKind kind) {
+bool is_kind(std::string_view sentence, Kind kind) {
   return sentence.size() > 7 && sentence.front() == '$' && sentence[6] == ',' &&
-         sentence.substr(3, 3) == (kind == NmeaKind::gga ? "GGA" : "RMC");
+         sentence.substr(3, 3) == (kind == Kind::gga ? "GGA" : "RMC");
 }
 
-class NmeaTable final : public TableReader {
+class Table final : public TableReader {
  public:
-  NmeaTable(std::unique_ptr<RandomBytes> file, NmeaKind kind)
+  Table(std::unique_ptr<RandomBytes> file, Kind kind)
       : file_(std::move(file)), lines_(*file_, 0, 1), kind_(kind) {
     head_.format = "NMEA";
     head_.headings = {"time (s)", "latitude",   "longitude", "height (m)",
                       "quality",  "satellites", "hdop"};
     head_.columns = head_.headings.size();
-    head_.notes.push_back({Severity::info, kind == NmeaKind::gga
+    head_.notes.push_back({Severity::info, kind == Kind::gga
                                                ? "positions of the GGA sentences"
                                                : "positions of the RMC sentences, as there is no "
                                                  "GGA among the first"});
@@ -105,7 +105,7 @@ class NmeaTable final : public TableReader {
       std::string_view text = lines_.text();
       while (!text.empty() && (text.back() == '\r' || text.back() == ' ')) text.remove_suffix(1);
       if (!is_kind(text, kind_)) continue;
-      const std::optional<NmeaFix> fix = parse_nmea(text, kind_);
+      const std::optional<Fix> fix = parse(text, kind_);
       if (!fix) {
         if (spoilt_++ == 0) first_spoilt_ = lines_.number();
         continue;
@@ -130,7 +130,7 @@ class NmeaTable final : public TableReader {
   }
 
  private:
-  void put(const NmeaFix& fix, std::span<const std::span<double>> into, std::size_t row) {
+  void put(const Fix& fix, std::span<const std::span<double>> into, std::size_t row) {
     double time_s = fix.time_of_day_s + days_ * day_s;
     if (before_s_ && time_s < *before_s_ - 0.5 * day_s) {
       days_ += 1.0;
@@ -144,7 +144,7 @@ class NmeaTable final : public TableReader {
 
   std::unique_ptr<RandomBytes> file_;
   LineReader lines_;
-  NmeaKind kind_;
+  Kind kind_;
   TableHead head_;
   double days_ = 0.0;
   std::optional<double> before_s_;
@@ -153,7 +153,7 @@ class NmeaTable final : public TableReader {
 
 }  // namespace
 
-std::optional<NmeaFix> parse_nmea(std::string_view sentence, NmeaKind kind) {
+std::optional<Fix> parse(std::string_view sentence, Kind kind) {
   if (!is_kind(sentence, kind)) return std::nullopt;
   sentence.remove_prefix(1);
   const std::size_t star = sentence.find('*');
@@ -161,17 +161,17 @@ std::optional<NmeaFix> parse_nmea(std::string_view sentence, NmeaKind kind) {
   if (star != std::string_view::npos && !checksum_holds(body, sentence.substr(star + 1)))
     return std::nullopt;
   const std::vector<std::string_view> fields = fields_of(body);
-  const bool gga = kind == NmeaKind::gga;
+  const bool gga = kind == Kind::gga;
   if (fields.size() < (gga ? 10u : 7u)) return std::nullopt;
   const std::optional<double> time_s = time_of_day_s(fields[1]);
   if (!time_s) return std::nullopt;
-  NmeaFix fix{.time_of_day_s = *time_s,
-              .latitude_deg = not_a_number,
-              .longitude_deg = not_a_number,
-              .height_m = gga ? number_or_nan(fields[9]) : not_a_number,
-              .quality = gga ? number_in(fields[6]).value_or(0.0) : (fields[2] == "A" ? 1.0 : 0.0),
-              .satellites = gga ? number_or_nan(fields[7]) : not_a_number,
-              .hdop = gga ? number_or_nan(fields[8]) : not_a_number};
+  Fix fix{.time_of_day_s = *time_s,
+          .latitude_deg = not_a_number,
+          .longitude_deg = not_a_number,
+          .height_m = gga ? number_or_nan(fields[9]) : not_a_number,
+          .quality = gga ? number_in(fields[6]).value_or(0.0) : (fields[2] == "A" ? 1.0 : 0.0),
+          .satellites = gga ? number_or_nan(fields[7]) : not_a_number,
+          .hdop = gga ? number_or_nan(fields[8]) : not_a_number};
   if (!(fix.quality > 0.0)) return fix;
   const std::size_t at = gga ? 2 : 3;
   const auto latitude = degrees(fields[at], fields[at + 1], 90.0);
@@ -182,28 +182,27 @@ std::optional<NmeaFix> parse_nmea(std::string_view sentence, NmeaKind kind) {
   return fix;
 }
 
-bool claims_nmea(std::string_view head, std::string_view) {
+bool claims(std::string_view head, std::string_view) {
   // One of the first lines, since a log may begin with half a sentence or a header.
   for (int line = 0; line < 20 && !head.empty(); ++line) {
     const std::string_view text = head.substr(0, head.find('\n'));
-    if (is_kind(text, NmeaKind::gga) || is_kind(text, NmeaKind::rmc)) return true;
+    if (is_kind(text, Kind::gga) || is_kind(text, Kind::rmc)) return true;
     head.remove_prefix(std::min(head.size(), text.size() + 1));
   }
   return false;
 }
 
-Result<std::unique_ptr<TableFile>> open_nmea(std::unique_ptr<PeekSource> source,
-                                             const ReadOptions& options) {
+Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
+                                        const ReadOptions& options) {
   const auto head = source->peek(4096);
   if (!head) return head.error();
   const bool gga = head->find("GGA,") != std::string_view::npos;
   auto file = random_bytes_of(std::move(source), options.progress);
   if (!file) return file.error();
   auto reader = recording_reader_of(
-      std::make_unique<NmeaTable>(std::move(file).value(), gga ? NmeaKind::gga : NmeaKind::rmc),
-      options);
+      std::make_unique<Table>(std::move(file).value(), gga ? Kind::gga : Kind::rmc), options);
   if (!reader) return reader.error();
   return only_table(std::move(reader).value());
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::nmea

@@ -64,7 +64,7 @@ class NpyWriter final : public RecordingWriter {
 
 }  // namespace
 
-Result<std::unique_ptr<RecordingWriter>> npy_writer(std::unique_ptr<OutputFile> file,
+Result<std::unique_ptr<RecordingWriter>> create_npy(std::unique_ptr<OutputFile> file,
                                                     const WriterHead& head,
                                                     const WriteOptions&) {
   return std::unique_ptr<RecordingWriter>(

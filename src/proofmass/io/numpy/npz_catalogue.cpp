@@ -35,7 +35,7 @@ class Lister {
       if (!name.ends_with(".npy")) {
         leave_out(name, "no array");
       } else if (catalogue_.places.size() + catalogue_.variables.skipped.size() >=
-                 most_mat_arrays) {
+                 matlab::most_arrays) {
         catalogue_.variables.is_cut = true;
         break;
       } else {
@@ -47,7 +47,7 @@ class Lister {
 
  private:
   void leave_out(std::string_view name, std::string_view why) {
-    if (catalogue_.variables.skipped.size() < most_mat_arrays)
+    if (catalogue_.variables.skipped.size() < matlab::most_arrays)
       catalogue_.variables.skipped.push_back(fmt::format("{} ({})", shown(name), why));
   }
 
@@ -79,7 +79,7 @@ class Lister {
     std::size_t column = 0;
     for (const NpyField& field : preface.header.fields) {
       if (field.type.kind == 0) continue;
-      if (catalogue_.places.size() >= most_mat_arrays) break;
+      if (catalogue_.places.size() >= matlab::most_arrays) break;
       if (field.count <= rows) {
         add_array(fmt::format("{}.{}", name, field.name), name.size(), {rows, field.count},
                   field.type);
@@ -94,7 +94,7 @@ class Lister {
                  std::vector<std::size_t> shape,
                  const FigureType& type) {
     while (shape.size() < 2) shape.push_back(1);
-    MatArray array;
+    matlab::Array array;
     array.path = shown(path);
     array.group_length = group_length == std::string_view::npos ? 0 : group_length;
     array.group_length = std::min(array.group_length, array.path.size());

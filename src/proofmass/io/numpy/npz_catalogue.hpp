@@ -22,7 +22,7 @@ struct NpzArray {
 /// The arrays of an archive as variables of a MAT file, the input of table selection. Shapes are as
 /// printed by NumPy, one dimension as a column.
 struct NpzCatalogue {
-  MatCatalogue variables;
+  matlab::Catalogue variables;
   std::vector<NpzArray> places;  ///< one per array
 };
 

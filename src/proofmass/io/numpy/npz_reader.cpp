@@ -21,7 +21,7 @@ class NpzColumns {
  public:
   static Result<NpzColumns> open(Archive& archive,
                                  const NpzArray& place,
-                                 const MatTable& table,
+                                 const matlab::Table& table,
                                  const Progress& progress) {
     auto layout = npy_layout(place.preface, !place.columns && table.is_turned);
     if (!layout) return layout.error();
@@ -64,9 +64,9 @@ class NpzColumns {
 /// The selected tables, read in parallel.
 class NpzTable final : public TableReader {
  public:
-  NpzTable(TableHead head, std::vector<NpzColumns> parts, const std::vector<MatTable>& tables)
+  NpzTable(TableHead head, std::vector<NpzColumns> parts, const std::vector<matlab::Table>& tables)
       : head_(std::move(head)), parts_(std::move(parts)), rows_(tables.front().rows) {
-    for (const MatTable& table : tables) widths_.push_back(table.width);
+    for (const matlab::Table& table : tables) widths_.push_back(table.width);
   }
 
   [[nodiscard]] const TableHead& head() const override { return head_; }
@@ -110,12 +110,12 @@ class NpzOpener {
       : archive_(archive), options_(options), catalogue_(list_npz(archive)) {}
 
   Result<std::unique_ptr<TableReader>> run() {
-    auto choice = choose_tables(catalogue_.variables, options_);
+    auto choice = matlab::choose_tables(catalogue_.variables, options_);
     if (!choice) return choice.error();
     TableHead head;
     head.format = "npz";
     head.notes = choice->notes;
-    for (const MatTable& table : choice->tables) head.columns += table.width;
+    for (const matlab::Table& table : choice->tables) head.columns += table.width;
     const auto first = first_rows(choice->tables);
     if (!first) return first.error();
     head.headings = headings_of(choice->tables, *first, options_);
@@ -128,16 +128,16 @@ class NpzOpener {
   }
 
  private:
-  Result<NpzColumns> open(const MatTable& table) {
+  Result<NpzColumns> open(const matlab::Table& table) {
     const auto place = static_cast<std::size_t>(table.array - catalogue_.variables.arrays.data());
     auto columns = NpzColumns::open(archive_, catalogue_.places[place], table, options_.progress);
     if (!columns) return columns.error().at(table.array->path);
     return columns;
   }
 
-  Result<std::vector<NpzColumns>> open_all(const std::vector<MatTable>& tables) {
+  Result<std::vector<NpzColumns>> open_all(const std::vector<matlab::Table>& tables) {
     std::vector<NpzColumns> parts;
-    for (const MatTable& table : tables) {
+    for (const matlab::Table& table : tables) {
       auto part = open(table);
       if (!part) return part.error();
       parts.push_back(std::move(part).value());
@@ -146,10 +146,10 @@ class NpzOpener {
   }
 
   /// The rows that decide whether a first column is the time.
-  Result<std::vector<Columns>> first_rows(const std::vector<MatTable>& tables) {
+  Result<std::vector<Columns>> first_rows(const std::vector<matlab::Table>& tables) {
     constexpr std::size_t most = 256;
     std::vector<Columns> all;
-    for (const MatTable& table : tables) {
+    for (const matlab::Table& table : tables) {
       auto part = open(table);
       if (!part) return part.error();
       Columns columns(table.width, std::vector<double>(std::min(most, table.rows)));
@@ -163,11 +163,11 @@ class NpzOpener {
     return all;
   }
 
-  Status read_rate(const MatArray& array, TableHead& head) {
-    const auto figure = first_rows({MatTable{&array, 1, 1, false}});
+  Status read_rate(const matlab::Array& array, TableHead& head) {
+    const auto figure = first_rows({matlab::Table{&array, 1, 1, false}});
     if (!figure) return figure.error();
     const std::vector<double>& values = (*figure)[0][0];
-    const bool is_valid = !values.empty() && is_rate(values[0]);
+    const bool is_valid = !values.empty() && matlab::is_rate(values[0]);
     if (is_valid) head.rate_hz = values[0];
     head.notes.push_back(
         {Severity::info, fmt::format("{}: {}", array.path,

@@ -11,7 +11,7 @@
 #include "proofmass/io/parquet/duckdb_library.hpp"
 #include "proofmass/io/parquet/facts.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 namespace {
 
 bool is_integer(std::string_view type) {
@@ -44,19 +44,18 @@ Result<std::vector<std::array<std::string, 2>>> pairs(const Duckdb& database,
 }
 
 /// Reads one file, its head and then its rows.
-class ParquetReading {
+class Reading {
  public:
-  ParquetReading(Duckdb database, const std::string& path, const ReadOptions& options)
+  Reading(Duckdb database, const std::string& path, const ReadOptions& options)
       : database_(std::move(database)),
         from_(fmt::format("read_parquet({})", sql_text(path))),
         path_(sql_text(path)),
         options_(options) {}
 
   Status run(const ByteSink& sink) {
-    for (const auto step :
-         {&ParquetReading::read_facts, &ParquetReading::read_columns, &ParquetReading::read_origin})
+    for (const auto step : {&Reading::read_facts, &Reading::read_columns, &Reading::read_origin})
       if (const Status done = (this->*step)(); !done) return done;
-    if (!sink(encode_parquet(head_))) return nobody();
+    if (!sink(encode(head_))) return nobody();
     return read_rows(sink);
   }
 
@@ -83,8 +82,7 @@ class ParquetReading {
     const auto columns = pairs(database_, "DESCRIBE SELECT * FROM " + from_);
     if (!columns) return columns.error();
     for (const auto& [name, type] : *columns) {
-      const bool is_read =
-          (is_number(type) || is_instant(type)) && names_.size() < most_parquet_columns;
+      const bool is_read = (is_number(type) || is_instant(type)) && names_.size() < most_columns;
       if (!is_read) {
         constexpr std::size_t most_listed = 300;
         if (head_.skipped.size() < most_listed)
@@ -126,7 +124,7 @@ class ParquetReading {
   Status read_origin() {
     if (head_.stamps) return Done{};
     std::vector<std::string> headings;
-    for (const ParquetColumn& column : head_.columns)
+    for (const Column& column : head_.columns)
       headings.push_back(column.unit.empty() ? column.name
                                              : fmt::format("{} ({})", column.name, column.unit));
     const auto time = time_among(headings, options_);
@@ -190,17 +188,17 @@ class ParquetReading {
   std::string from_;
   std::string path_;  ///< quoted for SQL
   const ReadOptions& options_;
-  ParquetHead head_;
+  Head head_;
   std::vector<std::string> names_;  ///< names of the columns that are read, quoted for SQL
   std::vector<double> block_;
 };
 
 }  // namespace
 
-Status read_parquet(const std::string& path, const ReadOptions& options, const ByteSink& sink) {
+Status read_values(const std::string& path, const ReadOptions& options, const ByteSink& sink) {
   auto opened = Duckdb::open(options.duckdb_library, "");
   if (!opened) return opened.error();
-  ParquetReading reading(std::move(opened).value(), path, options);
+  Reading reading(std::move(opened).value(), path, options);
   const Status done = reading.run(sink);
   if (done) return done;
   std::string message = done.error().message;
@@ -210,4 +208,4 @@ Status read_parquet(const std::string& path, const ReadOptions& options, const B
   return Error{done.error().code, message};
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

@@ -13,21 +13,21 @@
 #include "proofmass/io/bytes/subprocess.hpp"
 #include "proofmass/io/read_recording.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 
 /// Maximum number of columns that are read from a table.
-inline constexpr std::size_t most_parquet_columns = 4096;
+inline constexpr std::size_t most_columns = 4096;
 
 /// A column to be read, as doubles.
-struct ParquetColumn {
+struct Column {
   std::string name;
   std::string unit;  ///< as written by Proofmass, or "ns" for timestamps; empty: unknown
   std::string type;  ///< DuckDB's: "FLOAT", "TIMESTAMP_NS"
 };
 
 /// Information on a Parquet file before its first row.
-struct ParquetHead {
-  std::vector<ParquetColumn> columns;
+struct Head {
+  std::vector<Column> columns;
   std::uint64_t rows = 0;
   std::map<std::string, std::string, std::less<>> facts;  ///< key-value metadata
   std::string skipped;                                    ///< "note (VARCHAR)"; empty: none
@@ -43,18 +43,18 @@ struct ParquetHead {
   [[nodiscard]] std::vector<Label> labels() const;
 };
 
-/// Serialises a head; the decoder trusts nothing. Errors of decode_parquet: corrupt.
-[[nodiscard]] std::string encode_parquet(const ParquetHead& head);
-[[nodiscard]] Result<ParquetHead> decode_parquet(std::string_view bytes);
+/// Serialises a head; the decoder trusts nothing. Errors of decode: corrupt.
+[[nodiscard]] std::string encode(const Head& head);
+[[nodiscard]] Result<Head> decode(std::string_view bytes);
 
 /// Total size of the encoded head that begins with `bytes`; nullopt if these are too few.
-[[nodiscard]] std::optional<std::uint64_t> parquet_head_bytes(std::string_view bytes);
+[[nodiscard]] std::optional<std::uint64_t> head_bytes(std::string_view bytes);
 
 /// Reads a file by DuckDB, in a child process: passes on the encoded head, then blocks of rows,
 /// each of at most most_frame_bytes, column by column, NaN for missing values. Errors: unsupported
 /// (no library), corrupt, too_few_samples (no numeric column).
-[[nodiscard]] Status read_parquet(const std::string& path,
-                                  const ReadOptions& options,
-                                  const ByteSink& sink);
+[[nodiscard]] Status read_values(const std::string& path,
+                                 const ReadOptions& options,
+                                 const ByteSink& sink);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

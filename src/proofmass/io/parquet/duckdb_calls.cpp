@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 namespace {
 
 /// Finds the functions; keeps the name of a missing one.
@@ -90,4 +90,4 @@ Error duckdb_error(Errc code, const char* words) {
   return {code, fmt::format("DuckDB says \"{}\"", duckdb_words(words))};
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

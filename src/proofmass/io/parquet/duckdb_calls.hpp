@@ -6,7 +6,7 @@
 #include "proofmass/core/result.hpp"
 
 // Functions used of DuckDB's C library. Source: DuckDB, "C API", version 1.1.
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 
 /// duckdb_result, which is passed by value.
 struct DuckdbResult {
@@ -80,4 +80,4 @@ struct DuckdbCalls {
 [[nodiscard]] std::string duckdb_words(const char* words);
 [[nodiscard]] Error duckdb_error(Errc code, const char* words);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

@@ -6,7 +6,7 @@
 
 #include "proofmass/io/parquet/duckdb_calls.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 namespace {
 
 Error no_library(const std::string& library, const std::string& why) {
@@ -123,4 +123,4 @@ std::string sql_name(std::string_view name) {
   return quoted(name, '"');
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

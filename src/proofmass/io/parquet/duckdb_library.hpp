@@ -14,7 +14,7 @@
 
 // DuckDB, which reads and writes Parquet: its C library, loaded on demand.
 // Source: DuckDB, "C API", https://duckdb.org/docs/stable/clients/c/api, as of version 1.1.
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 
 struct DuckdbCalls;
 
@@ -98,4 +98,4 @@ class Duckdb {
 [[nodiscard]] std::string sql_text(std::string_view text);
 [[nodiscard]] std::string sql_name(std::string_view name);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

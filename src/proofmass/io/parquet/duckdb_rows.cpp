@@ -7,7 +7,7 @@
 #include "proofmass/io/parquet/duckdb_calls.hpp"
 #include "proofmass/io/parquet/duckdb_library.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 namespace {
 
 bool is_there(const std::uint64_t* validity, std::size_t row) {
@@ -108,4 +108,4 @@ Error DuckdbAppender::failed() const {
   return duckdb_error(Errc::unreadable, calls_->appender_error(appender_));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

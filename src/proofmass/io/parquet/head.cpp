@@ -5,7 +5,7 @@
 #include "proofmass/io/parquet/child.hpp"
 #include "proofmass/io/parquet/facts.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 namespace {
 
 constexpr std::size_t most_facts = 8192;
@@ -22,12 +22,12 @@ std::optional<std::uint64_t> take_number(std::string_view& line) {
 
 }  // namespace
 
-std::string_view ParquetHead::fact(std::string_view key) const {
+std::string_view Head::fact(std::string_view key) const {
   const auto found = facts.find(key);
   return found == facts.end() ? std::string_view{} : std::string_view(found->second);
 }
 
-std::vector<Label> ParquetHead::labels() const {
+std::vector<Label> Head::labels() const {
   std::vector<Label> labels;
   std::string_view lines = fact(parquet::labels_key);
   while (!lines.empty()) {
@@ -41,9 +41,9 @@ std::vector<Label> ParquetHead::labels() const {
   return labels;
 }
 
-std::string encode_parquet(const ParquetHead& head) {
+std::string encode(const Head& head) {
   WordWriter to;
-  to.list(head.columns, [&](const ParquetColumn& column) {
+  to.list(head.columns, [&](const Column& column) {
     to.text(column.name);
     to.text(column.unit);
     to.text(column.type);
@@ -64,20 +64,20 @@ std::string encode_parquet(const ParquetHead& head) {
   return whole.take();
 }
 
-std::optional<std::uint64_t> parquet_head_bytes(std::string_view bytes) {
+std::optional<std::uint64_t> head_bytes(std::string_view bytes) {
   if (bytes.size() < sizeof(std::uint64_t)) return std::nullopt;
   const std::uint64_t size = WordReader(bytes).number();
   // An impossible size is larger than any available data.
   return size > size + sizeof size ? size : size + sizeof size;
 }
 
-Result<ParquetHead> decode_parquet(std::string_view bytes) {
+Result<Head> decode(std::string_view bytes) {
   WordReader whole(bytes);
   const std::string words = whole.bytes_text(bytes.size());
   WordReader from(words);
-  ParquetHead head;
-  head.columns = from.list(most_parquet_columns, [&] {
-    ParquetColumn column;
+  Head head;
+  head.columns = from.list(most_columns, [&] {
+    Column column;
     column.name = from.text();
     column.unit = from.text();
     column.type = from.text();
@@ -101,4 +101,4 @@ Result<ParquetHead> decode_parquet(std::string_view bytes) {
   return head;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

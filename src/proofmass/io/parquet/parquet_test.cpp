@@ -15,7 +15,7 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/written_test_support.hpp"
 
-namespace proofmass::io::parquet_test {
+namespace proofmass::io::parquet::parquet_test {
 namespace {
 
 /// DuckDB's library if it is installed; else empty.
@@ -51,7 +51,7 @@ class Parquet : public testing::Test {
     if (!file) return file.error();
     const bool has_stamps = !recording.time.is_uniform();
     WriteOptions options{.metadata = {{"command", "it's one"}}, .duckdb_library = duckdb_library()};
-    auto opened = parquet_writer(std::move(file).value(), {recording, has_stamps}, options);
+    auto opened = create(std::move(file).value(), {recording, has_stamps}, options);
     if (!opened) return opened.error();
     return write_in_pieces(**opened, recording, rows);
   }
@@ -220,16 +220,16 @@ TEST(ParquetWithoutItsLibrary, SaysWhereItWasLookedForAndHowToGetIt) {
   EXPECT_EQ(refused.error().message.find('\n'), std::string::npos);
 }
 
-TEST(ParquetHead, ComesBackAsItWasAndBelievesNoLength) {
-  ParquetHead head;
+TEST(Head, ComesBackAsItWasAndBelievesNoLength) {
+  Head head;
   head.columns = {{"time", "s", "DOUBLE"}, {"acc", "m/s^2", "FLOAT"}};
   head.rows = 12;
   head.facts = {{"labels", "1 2 x y\n3 3 z\n"}, {"key", "two\nlines"}};
   head.stamps = 0;
   head.origin = -7;
-  const std::string whole = encode_parquet(head);
-  EXPECT_EQ(parquet_head_bytes(whole), whole.size());
-  const auto back = decode_parquet(whole);
+  const std::string whole = encode(head);
+  EXPECT_EQ(head_bytes(whole), whole.size());
+  const auto back = decode(whole);
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(back->columns[1].unit, "m/s^2");
   EXPECT_EQ(back->rows, 12u);
@@ -238,14 +238,14 @@ TEST(ParquetHead, ComesBackAsItWasAndBelievesNoLength) {
   EXPECT_EQ(back->stamps, 0u);
   EXPECT_EQ(back->origin, -7);
   for (std::size_t size = 0; size < whole.size(); ++size)
-    EXPECT_FALSE(decode_parquet(std::string_view(whole).substr(0, size))) << size;
+    EXPECT_FALSE(decode(std::string_view(whole).substr(0, size))) << size;
   for (std::size_t byte = 0; byte < whole.size(); ++byte)
     for (const char value : {'\x01', '\x7F', '\xFF'}) {
       std::string changed = whole;
       changed[byte] = value;
-      if (const auto read = decode_parquet(changed)) (void)read->labels();
+      if (const auto read = decode(changed)) (void)read->labels();
     }
 }
 
 }  // namespace
-}  // namespace proofmass::io::parquet_test
+}  // namespace proofmass::io::parquet::parquet_test

@@ -16,7 +16,7 @@
 #include "proofmass/io/reading/labelled_reader.hpp"
 #include "proofmass/io/reading/recording_reader.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 namespace {
 
 template <class T>
@@ -28,9 +28,9 @@ std::optional<T> figure(std::string_view text) {
 }
 
 /// Rows as sent by the child: frames of doubles, column by column.
-class ParquetTableReader final : public TableReader {
+class ChunkReader final : public TableReader {
  public:
-  ParquetTableReader(Subprocess child, TableHead head)
+  ChunkReader(Subprocess child, TableHead head)
       : child_(std::move(child)), head_(std::move(head)) {}
 
   [[nodiscard]] const TableHead& head() const override { return head_; }
@@ -83,15 +83,15 @@ class ParquetTableReader final : public TableReader {
 };
 
 /// Information of the child on the file, before the first row.
-Result<ParquetHead> hear_head(Subprocess& child) {
+Result<Head> hear_head(Subprocess& child) {
   std::string bytes;
   constexpr std::size_t most_bytes = std::size_t{64} << 20;
   for (;;) {
     const auto piece = child.next();
     if (!piece) return piece.error();
     bytes.append(piece->data(), piece->size());
-    const auto wanted = parquet_head_bytes(bytes);
-    if (wanted && *wanted <= bytes.size()) return decode_parquet(bytes);
+    const auto wanted = head_bytes(bytes);
+    if (wanted && *wanted <= bytes.size()) return decode(bytes);
     if (piece->empty() || bytes.size() > most_bytes)
       return Error{Errc::corrupt, "is damaged: its contents cannot be listed"};
   }
@@ -104,11 +104,11 @@ struct OpenParquet {
 
 struct OpenTable {
   std::unique_ptr<TableReader> reader;
-  ParquetHead head;
+  Head head;
 };
 
 /// Notes on short texts in the metadata, except those that describe the columns.
-void note_texts(const ParquetHead& parquet, std::vector<Note>& notes) {
+void note_texts(const Head& parquet, std::vector<Note>& notes) {
   constexpr std::size_t most_texts = 4;
   constexpr std::size_t longest = 160;
   using namespace parquet;
@@ -123,17 +123,17 @@ void note_texts(const ParquetHead& parquet, std::vector<Note>& notes) {
   }
 }
 
-TableHead table_head(const ParquetHead& parquet, const OpenParquet& file) {
+TableHead table_head(const Head& parquet, const OpenParquet& file) {
   TableHead head;
   head.format = "Parquet";
   head.columns = parquet.columns.size();
-  for (const ParquetColumn& column : parquet.columns)
+  for (const Column& column : parquet.columns)
     head.headings.push_back(column.unit.empty() ? column.name
                                                 : fmt::format("{} ({})", column.name, column.unit));
   head.rows = parquet.rows;
   head.notes = file.notes;
   std::string read;
-  for (const ParquetColumn& column : parquet.columns) {
+  for (const Column& column : parquet.columns) {
     if (read.size() > 300) {
       read += ", …";
       break;
@@ -169,7 +169,7 @@ ChildLimits limits_for(const LibraryFile& file) {
 
 Result<OpenTable> open_table(const OpenParquet& file, const ReadOptions& options) {
   const auto work = [&](const ByteSink& sink) {
-    return read_parquet(file.file.path(), options, sink);
+    return read_values(file.file.path(), options, sink);
   };
   auto started = Subprocess::start(work, limits_for(file.file));
   if (!started) return started.error();
@@ -177,15 +177,13 @@ Result<OpenTable> open_table(const OpenParquet& file, const ReadOptions& options
   auto heard = hear_head(child);
   if (!heard) return heard.error();
   OpenTable table{nullptr, std::move(heard).value()};
-  table.reader =
-      std::make_unique<ParquetTableReader>(std::move(child), table_head(table.head, file));
+  table.reader = std::make_unique<ChunkReader>(std::move(child), table_head(table.head, file));
   return table;
 }
 
-class ParquetFile final : public TableFile {
+class File final : public TableFile {
  public:
-  ParquetFile(OpenParquet file, OpenTable first)
-      : file_(std::move(file)), first_(std::move(first)) {
+  File(OpenParquet file, OpenTable first) : file_(std::move(file)), first_(std::move(first)) {
     const TableHead& head = first_.reader->head();
     summary_[0] = {
         .name = {}, .headings = head.headings, .rows = head.rows, .rate_hz = head.rate_hz};
@@ -213,19 +211,19 @@ class ParquetFile final : public TableFile {
 
 }  // namespace
 
-bool claims_parquet(std::string_view head, std::string_view) {
+bool claims(std::string_view head, std::string_view) {
   return head.starts_with("PAR1");
 }
 
-Result<std::unique_ptr<TableFile>> open_parquet(std::unique_ptr<PeekSource> source,
-                                                const ReadOptions& options) {
+Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
+                                        const ReadOptions& options) {
   auto spooled = library_file_of(*source, options.progress);
   if (!spooled) return spooled.error();
   OpenParquet file{std::move(spooled).value(), source->notes()};
   auto first = open_table(file, options);
   if (!first) return first.error();
   return std::unique_ptr<TableFile>(
-      std::make_unique<ParquetFile>(std::move(file), std::move(first).value()));
+      std::make_unique<File>(std::move(file), std::move(first).value()));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

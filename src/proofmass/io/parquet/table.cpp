@@ -7,7 +7,7 @@
 
 #include "proofmass/core/contract.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 namespace {
 
 constexpr std::string_view parquet_magic = "PAR1";
@@ -152,24 +152,23 @@ std::vector<std::string> schema_of(const std::vector<TableColumn>& columns) {
 
 }  // namespace
 
-ParquetTable::ParquetTable(NewFile file, std::vector<TableColumn> columns)
+TableWriter::TableWriter(NewFile file, std::vector<TableColumn> columns)
     : file_(std::move(file)), columns_(std::move(columns)) {}
 
-Result<ParquetTable> ParquetTable::create(const std::string& path,
-                                          std::vector<TableColumn> columns) {
+Result<TableWriter> TableWriter::create(const std::string& path, std::vector<TableColumn> columns) {
   auto file = NewFile::create(path);
   if (!file) return file.error();
-  ParquetTable table(std::move(file).value(), std::move(columns));
+  TableWriter table(std::move(file).value(), std::move(columns));
   if (const Status begun = table.append(parquet_magic); !begun) return begun.error();
   return table;
 }
 
-Status ParquetTable::append(std::string_view bytes) {
+Status TableWriter::append(std::string_view bytes) {
   offset_ += bytes.size();
   return file_.append(bytes);
 }
 
-Status ParquetTable::add(const std::vector<std::vector<TableCell>>& columns) {
+Status TableWriter::add(const std::vector<std::vector<TableCell>>& columns) {
   PM_EXPECTS(columns.size() == columns_.size());
   if (columns.empty() || columns.front().empty()) return Done{};
   Group group{columns.front().size(), {}};
@@ -185,7 +184,7 @@ Status ParquetTable::add(const std::vector<std::vector<TableCell>>& columns) {
   return Done{};
 }
 
-Status ParquetTable::finish() {
+Status TableWriter::finish() {
   std::vector<std::string> groups;
   std::int64_t rows = 0;
   for (const Group& group : groups_) {
@@ -229,4 +228,4 @@ Status ParquetTable::finish() {
   return file_.keep();
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

@@ -12,7 +12,7 @@
 
 // Tables of figures and texts as Parquet, written without a library: DuckDB, pandas, Arrow and
 // Spark read them.
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 
 /// A field: null, a number or a text (UTF-8). A number that is not finite is written as null.
 using TableCell = std::variant<std::monostate, double, std::string>;
@@ -26,11 +26,11 @@ struct TableColumn {
 /// one page a column and group of rows. It takes its name only in finish(). Source: Apache Parquet
 /// format 2.9, README (file layout), Encodings.md (PLAIN, RLE/bit-packed hybrid), parquet.thrift;
 /// Apache Thrift, compact protocol specification.
-class ParquetTable {
+class TableWriter {
  public:
   /// Errors of all: unwritable.
-  [[nodiscard]] static Result<ParquetTable> create(const std::string& path,
-                                                   std::vector<TableColumn> columns);
+  [[nodiscard]] static Result<TableWriter> create(const std::string& path,
+                                                  std::vector<TableColumn> columns);
 
   /// A group of rows, column by column; all columns are of one length, below 2^28. A figure in a
   /// column of texts is written as its shortest decimal form, a text in one of figures as none.
@@ -46,7 +46,7 @@ class ParquetTable {
     std::uint64_t rows = 0;
     std::vector<Chunk> chunks;
   };
-  ParquetTable(NewFile file, std::vector<TableColumn> columns);
+  TableWriter(NewFile file, std::vector<TableColumn> columns);
   [[nodiscard]] Status append(std::string_view bytes);
 
   NewFile file_;
@@ -57,7 +57,7 @@ class ParquetTable {
 
 /// A Parquet file's rows as CSV with a line of names, every field quoted, read by DuckDB in a
 /// process of its own. Errors: unsupported (no library), corrupt, unreadable.
-[[nodiscard]] Result<std::string> parquet_as_csv(const std::string& path,
-                                                 const std::string& duckdb_library);
+[[nodiscard]] Result<std::string> as_csv(const std::string& path,
+                                         const std::string& duckdb_library);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

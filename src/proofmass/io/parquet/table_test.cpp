@@ -8,7 +8,7 @@
 #include <iterator>
 #include <limits>
 
-namespace proofmass::io::parquet_table_test {
+namespace proofmass::io::parquet::table_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,7 +20,7 @@ std::string library() {
   return fs::exists(here) ? here.string() : "";
 }
 
-class ParquetTables : public testing::Test {
+class Tables : public testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::temp_directory_path() /
@@ -35,17 +35,17 @@ class ParquetTables : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(ParquetTables, AreReadByDuckdbAsTheyWereWritten) {
+TEST_F(Tables, AreReadByDuckdbAsTheyWereWritten) {
   if (library().empty()) GTEST_SKIP() << "no libduckdb.so: set PROOFMASS_DUCKDB_LIB to its path";
-  auto created = ParquetTable::create(path(), {{"file", true}, {"white", false}});
+  auto created = TableWriter::create(path(), {{"file", true}, {"white", false}});
   ASSERT_TRUE(created);
-  ParquetTable writer = std::move(created).value();
+  TableWriter writer = std::move(created).value();
   ASSERT_TRUE(writer.add({{std::string("a \"b\".csv"), std::monostate{}, 2.5},
                           {0.1, std::nan(""), std::string("no figure")}}));
   std::vector<TableCell> texts(20, std::string("µ")), figures(20, -1e-300);
   ASSERT_TRUE(writer.add({texts, figures}));
   ASSERT_TRUE(writer.finish());
-  const auto csv = parquet_as_csv(path(), library());
+  const auto csv = as_csv(path(), library());
   ASSERT_TRUE(csv) << csv.error().message;
   std::string expected =
       "\"file\",\"white\"\n\"a \"\"b\"\".csv\",\"0.1\"\n\"\",\"\"\n\"2.5\",\"\"\n";
@@ -53,10 +53,10 @@ TEST_F(ParquetTables, AreReadByDuckdbAsTheyWereWritten) {
   EXPECT_EQ(*csv, expected);
 }
 
-TEST_F(ParquetTables, BeginAndEndWithTheMagicWordAndHoldFiguresAsEightBytes) {
-  auto created = ParquetTable::create(path(), {{"x", false}});
+TEST_F(Tables, BeginAndEndWithTheMagicWordAndHoldFiguresAsEightBytes) {
+  auto created = TableWriter::create(path(), {{"x", false}});
   ASSERT_TRUE(created);
-  ParquetTable writer = std::move(created).value();
+  TableWriter writer = std::move(created).value();
   ASSERT_TRUE(writer.add({{1.0}}));
   ASSERT_TRUE(writer.finish());
   std::ifstream file(path(), std::ios::binary);
@@ -68,23 +68,23 @@ TEST_F(ParquetTables, BeginAndEndWithTheMagicWordAndHoldFiguresAsEightBytes) {
   EXPECT_NE(bytes.find(page), std::string::npos);
 }
 
-TEST_F(ParquetTables, TakeTheirNameOnlyWhenFinished) {
+TEST_F(Tables, TakeTheirNameOnlyWhenFinished) {
   {
-    auto created = ParquetTable::create(path(), {{"x", false}});
+    auto created = TableWriter::create(path(), {{"x", false}});
     ASSERT_TRUE(created);
-    ParquetTable writer = std::move(created).value();
+    TableWriter writer = std::move(created).value();
     EXPECT_TRUE(writer.add({{1.0}}));
   }
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(ParquetTables, ThatAreDamagedAreRefused) {
+TEST_F(Tables, ThatAreDamagedAreRefused) {
   if (library().empty()) GTEST_SKIP() << "no libduckdb.so: set PROOFMASS_DUCKDB_LIB to its path";
   std::ofstream(path()) << "PAR1 and nothing";
-  const auto csv = parquet_as_csv(path(), library());
+  const auto csv = as_csv(path(), library());
   ASSERT_FALSE(csv);
   EXPECT_EQ(csv.error().code, Errc::corrupt);
 }
 
 }  // namespace
-}  // namespace proofmass::io::parquet_table_test
+}  // namespace proofmass::io::parquet::table_test

@@ -4,7 +4,7 @@
 #include "proofmass/io/parquet/duckdb_library.hpp"
 #include "proofmass/io/parquet/table.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 namespace {
 
 std::string csv_field(std::string_view text) {
@@ -57,7 +57,7 @@ Status send_rows(const Duckdb& database, const std::string& table, const ByteSin
 
 }  // namespace
 
-Result<std::string> parquet_as_csv(const std::string& path, const std::string& duckdb_library) {
+Result<std::string> as_csv(const std::string& path, const std::string& duckdb_library) {
   std::string csv;
   const auto work = [&](const ByteSink& sink) -> Status {
     auto opened = Duckdb::open(duckdb_library, "");
@@ -74,4 +74,4 @@ Result<std::string> parquet_as_csv(const std::string& path, const std::string& d
   return csv;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

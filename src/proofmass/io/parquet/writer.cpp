@@ -14,7 +14,7 @@
 #include "proofmass/io/parquet/facts.hpp"
 #include "proofmass/io/reading/recording_writers.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::parquet {
 namespace {
 
 /// Temporary database for the rows; deleted with its owner.
@@ -49,9 +49,9 @@ std::vector<std::string> column_names(const std::vector<std::string>& names) {
   return unique;
 }
 
-class ParquetWriter final : public RecordingWriter {
+class Writer final : public RecordingWriter {
  public:
-  ParquetWriter(std::unique_ptr<OutputFile> output, const WriterHead& head)
+  Writer(std::unique_ptr<OutputFile> output, const WriterHead& head)
       : output_(std::move(output)),
         room_(output_->part_path() + ".duckdb"),
         time_(head.recording.time),
@@ -179,12 +179,12 @@ class ParquetWriter final : public RecordingWriter {
 
 }  // namespace
 
-Result<std::unique_ptr<RecordingWriter>> parquet_writer(std::unique_ptr<OutputFile> file,
-                                                        const WriterHead& head,
-                                                        const WriteOptions& options) {
-  auto writer = std::make_unique<ParquetWriter>(std::move(file), head);
+Result<std::unique_ptr<RecordingWriter>> create(std::unique_ptr<OutputFile> file,
+                                                const WriterHead& head,
+                                                const WriteOptions& options) {
+  auto writer = std::make_unique<Writer>(std::move(file), head);
   if (const Status begun = writer->begin(head, options); !begun) return begun.error();
   return std::unique_ptr<RecordingWriter>(std::move(writer));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::parquet

@@ -8,34 +8,35 @@
 
 namespace proofmass::io {
 
-// The writers of write_recording(), one per format; see there for the contents of each.
+/// Begins a file of one format; see write_recording() for the contents of each.
+using CreateWriter = Result<std::unique_ptr<RecordingWriter>>(std::unique_ptr<OutputFile> file,
+                                                              const WriterHead& head,
+                                                              const WriteOptions& options);
 
-[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> csv_writer(std::unique_ptr<OutputFile> file,
-                                                                  const WriterHead& head,
-                                                                  const WriteOptions& options);
-[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> npy_writer(std::unique_ptr<OutputFile> file,
-                                                                  const WriterHead& head,
-                                                                  const WriteOptions& options);
+CreateWriter create_csv, create_npy;
+
+namespace hdf5 {
 /// A group "recording" with one chunked dataset of doubles per channel. Errors: unsupported (built
 /// without the library).
-[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> hdf5_writer(std::unique_ptr<OutputFile> file,
-                                                                   const WriterHead& head,
-                                                                   const WriteOptions& options);
+CreateWriter create;
+}  // namespace hdf5
+
+namespace matlab {
+CreateWriter create;
+}  // namespace matlab
+
+namespace mcap {
+CreateWriter create;
+}  // namespace mcap
+
+namespace parquet {
 /// One column of doubles per channel, by DuckDB's library, which is loaded when this is called.
 /// Errors: unsupported (no such library).
-[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> parquet_writer(
-    std::unique_ptr<OutputFile> file, const WriterHead& head, const WriteOptions& options);
+CreateWriter create;
+}  // namespace parquet
 
-[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> mat_writer(std::unique_ptr<OutputFile> file,
-                                                                  const WriterHead& head,
-                                                                  const WriteOptions& options);
-
-[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> tdms_writer(std::unique_ptr<OutputFile> file,
-                                                                   const WriterHead& head,
-                                                                   const WriteOptions& options);
-
-[[nodiscard]] Result<std::unique_ptr<RecordingWriter>> mcap_writer(std::unique_ptr<OutputFile> file,
-                                                                   const WriterHead& head,
-                                                                   const WriteOptions& options);
+namespace tdms {
+CreateWriter create;
+}  // namespace tdms
 
 }  // namespace proofmass::io

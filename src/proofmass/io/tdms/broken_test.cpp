@@ -4,7 +4,7 @@
 #include "proofmass/io/tdms/reader.hpp"
 #include "proofmass/io/tdms/tdms_test_support.hpp"
 
-namespace proofmass::io::tdms_broken_test {
+namespace proofmass::io::tdms::broken_test {
 namespace {
 
 using namespace specimen;
@@ -64,7 +64,7 @@ TEST(BrokenTdms, AFileThatEndsWithAChunkTellsWhetherMoreWasToCome) {
 }
 
 TEST(BrokenTdms, IndexFilesAreRefusedWithAWord) {
-  EXPECT_TRUE(claims_tdms("TDSh", ""));
+  EXPECT_TRUE(claims("TDSh", ""));
   std::string index = tdms_segment(tdms_whole, two_channels().bytes(), "");
   index[3] = 'h';
   const auto read = tdms_contents(index);
@@ -151,4 +151,4 @@ TEST(BrokenTdms, BrokenOffAtEveryByteNothingIsInvented) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::tdms_broken_test
+}  // namespace proofmass::io::tdms::broken_test

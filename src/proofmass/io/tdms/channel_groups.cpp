@@ -9,7 +9,7 @@
 #include "proofmass/io/csv/layout.hpp"
 #include "proofmass/io/text/wording.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 constexpr double longest_increment_s = 1e9;
@@ -21,8 +21,8 @@ struct Waveform {
   std::optional<std::int64_t> start_ns;
 };
 
-bool is_read(const TdmsObject& object) {
-  return object.has_index && !object.changes_kind && object.kind <= TdmsKind::instant;
+bool is_read(const Object& object) {
+  return object.has_index && !object.changes_kind && object.kind <= Kind::instant;
 }
 
 /// The rate whose period is `increment_s` to the last bit, an integer if there is one.
@@ -32,14 +32,14 @@ double rate_of(double increment_s) {
   return whole > 0.0 && 1.0 / whole == increment_s ? whole : rate_hz;
 }
 
-bool is_time_axis(const TdmsProperties& properties) {
+bool is_time_axis(const Properties& properties) {
   const std::string unit = text_of(properties, "wf_xunit_string");
   if (unit.empty()) return true;
   const auto parsed = parse_unit(unit);
   return parsed && parsed->quantity == Quantity::time && parsed->to_si == 1.0;
 }
 
-Waveform waveform_of(const TdmsProperties& properties) {
+Waveform waveform_of(const Properties& properties) {
   Waveform waveform;
   if (const auto start = instant_of(properties, "wf_start_time")) {
     waveform.start_ns = start->unix_ns();
@@ -61,10 +61,10 @@ Waveform waveform_of(const TdmsProperties& properties) {
   return waveform;
 }
 
-std::string heading_of(const TdmsMap& map, std::uint32_t channel) {
-  const TdmsObject& object = map.objects[channel];
+std::string heading_of(const Map& map, std::uint32_t channel) {
+  const Object& object = map.objects[channel];
   const std::string name = object.name.empty() ? object.group : object.name;
-  if (object.kind == TdmsKind::instant) return name + " (s)";
+  if (object.kind == Kind::instant) return name + " (s)";
   std::string unit = text_of(object.properties, "unit_string");
   if (unit.empty()) unit = text_of(object.properties, "NI_UnitDescription");
   // The unit is that of the scaled values.
@@ -75,11 +75,11 @@ std::string heading_of(const TdmsMap& map, std::uint32_t channel) {
 
 /// A table, and the properties that its channels must share.
 struct Draft {
-  TdmsGroup group;
+  Group group;
   std::uint64_t promised = 0;
   Waveform waveform;
 
-  [[nodiscard]] bool takes(const TdmsObject& object,
+  [[nodiscard]] bool takes(const Object& object,
                            const Waveform& other,
                            const std::string& group_name) const {
     if (group_name != group.name || object.promised != promised) return false;
@@ -93,8 +93,8 @@ struct Draft {
   }
 };
 
-void add(Draft& draft, const TdmsMap& map, std::uint32_t channel, const Waveform& waveform) {
-  const TdmsObject& object = map.objects[channel];
+void add(Draft& draft, const Map& map, std::uint32_t channel, const Waveform& waveform) {
+  const Object& object = map.objects[channel];
   if (!draft.waveform.increment_s) draft.waveform.increment_s = waveform.increment_s;
   if (!draft.waveform.rate_hz) draft.waveform.rate_hz = waveform.rate_hz;
   if (!draft.waveform.start_ns) draft.waveform.start_ns = waveform.start_ns;
@@ -104,11 +104,11 @@ void add(Draft& draft, const TdmsMap& map, std::uint32_t channel, const Waveform
 }
 
 /// Timestamps, or else seconds since a start given by the channel itself.
-std::optional<std::size_t> time_column_of(const TdmsMap& map, const TdmsGroup& group) {
+std::optional<std::size_t> time_column_of(const Map& map, const Group& group) {
   for (std::size_t c = 0; c < group.channels.size(); ++c)
-    if (map.objects[group.channels[c]].kind == TdmsKind::instant) return c;
+    if (map.objects[group.channels[c]].kind == Kind::instant) return c;
   for (std::size_t c = 0; c < group.channels.size(); ++c) {
-    const TdmsProperties& properties = map.objects[group.channels[c]].properties;
+    const Properties& properties = map.objects[group.channels[c]].properties;
     const auto unit = parse_unit(text_of(properties, "unit_string"));
     const auto start = instant_of(properties, "wf_start_time");
     if (unit && unit->quantity == Quantity::time && unit->to_si == 1.0 && start &&
@@ -118,11 +118,11 @@ std::optional<std::size_t> time_column_of(const TdmsMap& map, const TdmsGroup& g
   return std::nullopt;
 }
 
-void note_short_channels(const TdmsMap& map, TdmsGroup& group) {
+void note_short_channels(const Map& map, Group& group) {
   std::string names;
   std::size_t count = 0;
   for (const std::uint32_t channel : group.channels) {
-    const TdmsObject& object = map.objects[channel];
+    const Object& object = map.objects[channel];
     if (object.values == group.rows) continue;
     constexpr std::size_t most_named = 5;
     if (++count <= most_named)
@@ -135,8 +135,8 @@ void note_short_channels(const TdmsMap& map, TdmsGroup& group) {
                      count, group.channels.size(), group.rows, names, count > 5 ? ", …" : "")});
 }
 
-TdmsGroup finished(const TdmsMap& map, Draft draft) {
-  TdmsGroup& group = draft.group;
+Group finished(const Map& map, Draft draft) {
+  Group& group = draft.group;
   group.rate_hz = draft.waveform.rate_hz;
   group.start_ns = draft.waveform.start_ns;
   group.time_column = time_column_of(map, group);
@@ -152,7 +152,7 @@ TdmsGroup finished(const TdmsMap& map, Draft draft) {
 }
 
 /// Gives tables of one group distinct names by rate, else by length, else by number.
-void name_apart(std::vector<TdmsGroup>& groups) {
+void name_apart(std::vector<Group>& groups) {
   const auto is_taken = [&](const std::string& name, std::size_t self) {
     for (std::size_t i = 0; i < groups.size(); ++i)
       if (i != self && groups[i].name == name) return true;
@@ -174,44 +174,43 @@ void name_apart(std::vector<TdmsGroup>& groups) {
 }
 
 /// "remarks (text, 12 values)"
-std::string described(const TdmsObject& object) {
+std::string described(const Object& object) {
   std::string what = "changes its type";
-  if (!object.changes_kind)
-    what = object.kind == TdmsKind::text ? "text" : words_for_type(object.type);
+  if (!object.changes_kind) what = object.kind == Kind::text ? "text" : words_for_type(object.type);
   return fmt::format("{} ({}, {} values)", object.name.empty() ? object.group : object.name, what,
                      object.values);
 }
 
 }  // namespace
 
-Result<std::optional<TdmsScaling>> scaling_of(const TdmsMap& map, std::uint32_t channel) {
-  const TdmsObject& object = map.objects[channel];
+Result<std::optional<Scaling>> scaling_of(const Map& map, std::uint32_t channel) {
+  const Object& object = map.objects[channel];
   const std::vector<std::uint32_t> scalers = scalers_of(map, channel);
-  const TdmsProperties* const said[]{&object.properties, &map.properties_of(object.group),
-                                     &map.properties_of("")};
-  for (const TdmsProperties* properties : said)
-    if (properties->contains("NI_Number_Of_Scales")) return TdmsScaling::of(*properties, scalers);
-  return std::optional<TdmsScaling>{};
+  const Properties* const said[]{&object.properties, &map.properties_of(object.group),
+                                 &map.properties_of("")};
+  for (const Properties* properties : said)
+    if (properties->contains("NI_Number_Of_Scales")) return Scaling::of(*properties, scalers);
+  return std::optional<Scaling>{};
 }
 
-std::vector<std::uint32_t> scalers_of(const TdmsMap& map, std::uint32_t channel) {
+std::vector<std::uint32_t> scalers_of(const Map& map, std::uint32_t channel) {
   std::vector<std::uint32_t> scalers;
-  for (const TdmsLayout& layout : map.layouts) {
+  for (const Layout& layout : map.layouts) {
     const auto entries = layout.of(channel);
     if (entries.empty()) continue;
     if (layout.is_daqmx)
-      for (const TdmsEntry& entry : entries) scalers.push_back(entry.scaler);
+      for (const Entry& entry : entries) scalers.push_back(entry.scaler);
     break;
   }
   return scalers;
 }
 
-std::vector<TdmsGroup> group_channels(const TdmsMap& map) {
+std::vector<Group> group_channels(const Map& map) {
   // A file with more tables does not contain measurements.
   constexpr std::size_t most_tables = 1024;
   std::vector<Draft> drafts;
   for (std::uint32_t i = 0; i < map.objects.size(); ++i) {
-    const TdmsObject& object = map.objects[i];
+    const Object& object = map.objects[i];
     if (!is_read(object) || object.promised == 0) continue;
     const Waveform waveform = waveform_of(object.properties);
     auto draft = std::ranges::find_if(
@@ -225,18 +224,18 @@ std::vector<TdmsGroup> group_channels(const TdmsMap& map) {
     }
     add(*draft, map, i, waveform);
   }
-  std::vector<TdmsGroup> groups;
+  std::vector<Group> groups;
   for (Draft& draft : drafts)
     if (draft.group.rows > 0) groups.push_back(finished(map, std::move(draft)));
   name_apart(groups);
   return groups;
 }
 
-std::vector<Note> notes_on_unread(const TdmsMap& map) {
+std::vector<Note> notes_on_unread(const Map& map) {
   constexpr std::size_t most_named = 8;
   std::string list;
   std::size_t count = 0;
-  for (const TdmsObject& object : map.objects) {
+  for (const Object& object : map.objects) {
     if (!object.has_index || is_read(object)) continue;
     if (++count > most_named) continue;
     if (!list.empty()) list += ", ";
@@ -247,4 +246,4 @@ std::vector<Note> notes_on_unread(const TdmsMap& map) {
   return {{Severity::warning, "not read: " + list}};
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -10,10 +10,10 @@
 #include "proofmass/io/tdms/map.hpp"
 #include "proofmass/io/tdms/scaling.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 
 /// Channels of one group that were sampled together.
-struct TdmsGroup {
+struct Group {
   std::string name;                     ///< the group's, with a suffix if the group has several
   std::vector<std::uint32_t> channels;  ///< indices into the map's objects
   std::vector<std::string> headings;    ///< with units
@@ -25,20 +25,19 @@ struct TdmsGroup {
 };
 
 /// Conversion of a channel's stored values to measured ones: a property of the channel, of its
-/// group or of the file. Errors: as TdmsScaling::of().
-[[nodiscard]] Result<std::optional<TdmsScaling>> scaling_of(const TdmsMap& map,
-                                                            std::uint32_t channel);
+/// group or of the file. Errors: as Scaling::of().
+[[nodiscard]] Result<std::optional<Scaling>> scaling_of(const Map& map, std::uint32_t channel);
 
 /// The scalers of a channel of DAQmx raw data, in the order of the file; empty for any other.
-[[nodiscard]] std::vector<std::uint32_t> scalers_of(const TdmsMap& map, std::uint32_t channel);
+[[nodiscard]] std::vector<std::uint32_t> scalers_of(const Map& map, std::uint32_t channel);
 
 /// Groups the numeric channels into tables: those with the same group, length, rate and start.
 /// Groups are never joined, even where they would match: each is a separate measurement to
 /// LabVIEW's users. A channel that is short only because the file is truncated stays with the
 /// others.
-[[nodiscard]] std::vector<TdmsGroup> group_channels(const TdmsMap& map);
+[[nodiscard]] std::vector<Group> group_channels(const Map& map);
 
 /// Contents of unsupported channels, one note for the file; empty if there are none.
-[[nodiscard]] std::vector<Note> notes_on_unread(const TdmsMap& map);
+[[nodiscard]] std::vector<Note> notes_on_unread(const Map& map);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -7,7 +7,7 @@
 
 #include "proofmass/core/contract.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 /// Values read together of a channel that is not adjacent to the others.
@@ -15,7 +15,7 @@ constexpr std::uint64_t values_at_once = 16 << 10;
 
 }  // namespace
 
-Status TdmsWindow::read(std::uint64_t offset, std::span<char> into) const {
+Status Window::read(std::uint64_t offset, std::span<char> into) const {
   const auto count = file_.read_at(offset, into);
   if (!count) return count.error();
   if (*count == into.size()) return Done{};
@@ -23,7 +23,7 @@ Status TdmsWindow::read(std::uint64_t offset, std::span<char> into) const {
                                           offset + *count)};
 }
 
-Result<const char*> TdmsWindow::view(std::uint64_t offset, std::size_t size) {
+Result<const char*> Window::view(std::uint64_t offset, std::size_t size) {
   PM_EXPECTS(size <= bytes);
   if (offset < held_at_ || offset + size > held_at_ + held_size_) {
     const std::uint64_t there = file_.size() - std::min(file_.size(), offset);
@@ -41,16 +41,16 @@ Result<const char*> TdmsWindow::view(std::uint64_t offset, std::size_t size) {
   return held_.data() + (offset - held_at_);
 }
 
-TdmsColumn::TdmsColumn(const TdmsMap& map, std::uint32_t channel, std::uint32_t scaler)
+Column::Column(const Map& map, std::uint32_t channel, std::uint32_t scaler)
     : map_(map), channel_(channel), scaler_(scaler) {
   find_run();
 }
 
 /// Advances from the current run to the first with values of this channel.
-void TdmsColumn::find_run() {
+void Column::find_run() {
   for (entry_ = nullptr; run_ < map_.runs.size(); ++run_) {
-    const TdmsLayout& layout = map_.layouts[map_.runs[run_].layout];
-    for (const TdmsEntry& entry : layout.of(channel_)) {
+    const Layout& layout = map_.layouts[map_.runs[run_].layout];
+    for (const Entry& entry : layout.of(channel_)) {
       if (entry.scaler != scaler_ || entry.pieces == 0 || entry.values == 0) continue;
       entry_ = &entry;
       encoding_.kind = entry.kind;
@@ -62,14 +62,14 @@ void TdmsColumn::find_run() {
   }
 }
 
-void TdmsColumn::find_extent() {
-  const TdmsRun& run = map_.runs[run_];
-  const TdmsLayout& layout = map_.layouts[run.layout];
+void Column::find_extent() {
+  const Run& run = map_.runs[run_];
+  const Layout& layout = map_.layouts[run.layout];
   const std::uint64_t a_segment = entry_->values * run.chunks;
   const std::uint64_t segment = done_ / a_segment;
   const std::uint64_t chunk = done_ % a_segment / entry_->values;
   std::uint64_t value = done_ % entry_->values;
-  const TdmsPiece* piece = &layout.pieces[entry_->first_piece];
+  const Piece* piece = &layout.pieces[entry_->first_piece];
   for (; value >= piece->values; ++piece) value -= piece->values;
 
   extent_.offset = run.data_at + segment * run.distance + chunk * layout.chunk_bytes +
@@ -87,10 +87,10 @@ void TdmsColumn::find_extent() {
     extent_.values += entry_->values * (run.chunks - chunk - 1);
   }
 
-  const std::uint64_t size = bytes_of(entry_->kind);
+  const std::uint64_t size = bytes_per_value(entry_->kind);
   const bool is_alone = run.chunks == 1 && run.segments > 1;
   const std::uint64_t period = is_alone ? run.distance : layout.chunk_bytes;
-  constexpr std::uint64_t near = TdmsWindow::bytes / 4;
+  constexpr std::uint64_t near = Window::bytes / 4;
   if (extent_.stride > size) {
     extent_.is_shared = extent_.stride <= near;
     extent_.bytes_a_value = extent_.stride;
@@ -102,14 +102,14 @@ void TdmsColumn::find_extent() {
   }
 }
 
-std::size_t TdmsColumn::comfortable() const {
+std::size_t Column::comfortable() const {
   if (entry_ == nullptr || !extent_.is_shared) return values_at_once;
-  const std::uint64_t room = (TdmsWindow::bytes - extent_.reach) / extent_.bytes_a_value;
+  const std::uint64_t room = (Window::bytes - extent_.reach) / extent_.bytes_a_value;
   return static_cast<std::size_t>(std::clamp<std::uint64_t>(room, 1, values_at_once));
 }
 
-void TdmsColumn::advance(std::uint64_t count) {
-  const TdmsRun& run = map_.runs[run_];
+void Column::advance(std::uint64_t count) {
+  const Run& run = map_.runs[run_];
   done_ += count;
   extent_.values -= count;
   extent_.offset += count * extent_.stride;
@@ -124,32 +124,32 @@ void TdmsColumn::advance(std::uint64_t count) {
 }
 
 /// Reads values of the current extent.
-Status TdmsColumn::take(TdmsWindow& window, std::span<double> into) {
-  const std::size_t size = bytes_of(entry_->kind);
+Status Column::take(Window& window, std::span<double> into) {
+  const std::size_t size = bytes_per_value(entry_->kind);
   const auto stride = static_cast<std::size_t>(extent_.stride);
   const std::size_t wanted = (into.size() - 1) * stride + size;
   const bool is_native = encoding_.big_endian == (std::endian::native == std::endian::big);
   if (extent_.is_shared) {
     const auto bytes = window.view(extent_.offset, wanted);
     if (!bytes) return bytes.error();
-    decode_tdms(*bytes, stride, encoding_, into);
-  } else if (encoding_.kind == TdmsKind::f64 && is_native && stride == size) {
+    decode(*bytes, stride, encoding_, into);
+  } else if (encoding_.kind == Kind::f64 && is_native && stride == size) {
     return window.read(extent_.offset, {reinterpret_cast<char*>(into.data()), into.size_bytes()});
   } else {
     own_.resize(std::max(own_.size(), wanted));
     const Status read = window.read(extent_.offset, std::span(own_).first(wanted));
     if (!read) return read;
-    decode_tdms(own_.data(), stride, encoding_, into);
+    decode(own_.data(), stride, encoding_, into);
   }
   return Done{};
 }
 
-Status TdmsColumn::read(TdmsWindow& window, std::span<double> into) {
+Status Column::read(Window& window, std::span<double> into) {
   while (!into.empty() && entry_ != nullptr) {
     std::uint64_t most = values_at_once;
-    if (extent_.stride > bytes_of(entry_->kind) || extent_.is_shared)
-      most =
-          std::max<std::uint64_t>(1, (TdmsWindow::bytes - bytes_of(entry_->kind)) / extent_.stride);
+    if (extent_.stride > bytes_per_value(entry_->kind) || extent_.is_shared)
+      most = std::max<std::uint64_t>(
+          1, (Window::bytes - bytes_per_value(entry_->kind)) / extent_.stride);
     const auto count =
         static_cast<std::size_t>(std::min({most, extent_.values, std::uint64_t{into.size()}}));
     const Status taken = take(window, into.first(count));
@@ -161,18 +161,18 @@ Status TdmsColumn::read(TdmsWindow& window, std::span<double> into) {
   return Done{};
 }
 
-Result<std::optional<TdmsInstant>> TdmsColumn::first_instant(TdmsWindow& window) const {
-  using Found = std::optional<TdmsInstant>;
-  TdmsColumn ahead(map_, channel_, scaler_);
+Result<std::optional<Instant>> Column::first_instant(Window& window) const {
+  using Found = std::optional<Instant>;
+  Column ahead(map_, channel_, scaler_);
   constexpr int most_looked_at = 1000;
   for (int i = 0; i < most_looked_at && ahead.entry_ != nullptr; ++i) {
-    const auto bytes = window.view(ahead.extent_.offset, bytes_of(TdmsKind::instant));
+    const auto bytes = window.view(ahead.extent_.offset, bytes_per_value(Kind::instant));
     if (!bytes) return bytes.error();
-    const TdmsInstant instant = load_instant(*bytes, ahead.encoding_.big_endian);
+    const Instant instant = load_instant(*bytes, ahead.encoding_.big_endian);
     if (instant.is_set()) return Found(instant);
     ahead.advance(1);
   }
   return Found{};
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

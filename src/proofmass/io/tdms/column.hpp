@@ -12,17 +12,17 @@
 #include "proofmass/io/tdms/decode.hpp"
 #include "proofmass/io/tdms/map.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 
 /// A window of the file from which several columns read their values in turn.
-class TdmsWindow {
+class Window {
  public:
   static constexpr std::uint64_t bytes = 256 << 10;
 
   /// `file` must outlive the window.
-  explicit TdmsWindow(const RandomBytes& file) : file_(file) {}
+  explicit Window(const RandomBytes& file) : file_(file) {}
 
-  /// The bytes from `offset`, at most TdmsWindow::bytes, valid until the next call. If they are not
+  /// The bytes from `offset`, at most Window::bytes, valid until the next call. If they are not
   /// in the window, a whole window is read, because other columns need the bytes around them.
   /// Errors: unreadable, corrupt (the file has become shorter).
   [[nodiscard]] Result<const char*> view(std::uint64_t offset, std::size_t size);
@@ -37,18 +37,18 @@ class TdmsWindow {
 };
 
 /// The values of one channel, or of one of its scalers, in order.
-class TdmsColumn {
+class Column {
  public:
   /// `map` must outlive the column. Precondition: numbers or timestamps.
-  TdmsColumn(const TdmsMap& map, std::uint32_t channel, std::uint32_t scaler);
+  Column(const Map& map, std::uint32_t channel, std::uint32_t scaler);
 
   /// Number of values that can be read next from one window, together with those of the adjacent
   /// columns.
   [[nodiscard]] std::size_t comfortable() const;
   /// Fills `into`, with NaN after the last value. Errors: those of the window.
-  [[nodiscard]] Status read(TdmsWindow& window, std::span<double> into);
+  [[nodiscard]] Status read(Window& window, std::span<double> into);
   /// The first timestamp that is set; nullopt if there is none.
-  [[nodiscard]] Result<std::optional<TdmsInstant>> first_instant(TdmsWindow& window) const;
+  [[nodiscard]] Result<std::optional<Instant>> first_instant(Window& window) const;
   void count_from(Int128 origin_ns) { encoding_.origin_ns = origin_ns; }
 
  private:
@@ -65,17 +65,17 @@ class TdmsColumn {
   void find_run();
   void find_extent();
   void advance(std::uint64_t count);
-  [[nodiscard]] Status take(TdmsWindow& window, std::span<double> into);
+  [[nodiscard]] Status take(Window& window, std::span<double> into);
 
-  const TdmsMap& map_;
+  const Map& map_;
   std::uint32_t channel_;
   std::uint32_t scaler_;
-  TdmsEncoding encoding_;
+  Encoding encoding_;
   std::size_t run_ = 0;
-  const TdmsEntry* entry_ = nullptr;  ///< in the current run; nullptr: no more values
-  std::uint64_t done_ = 0;            ///< values of the current run
+  const Entry* entry_ = nullptr;  ///< in the current run; nullptr: no more values
+  std::uint64_t done_ = 0;        ///< values of the current run
   Extent extent_;
   std::vector<char> own_;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -5,7 +5,7 @@
 
 #include "proofmass/core/contract.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 /// Several segments of a fragmented file at once, and little if segments are large.
@@ -18,7 +18,7 @@ Error at_byte(std::uint64_t position, std::string_view what) {
   return {Errc::corrupt, fmt::format("byte {}: {}", position, what)};
 }
 
-void TdmsCursor::enter(std::uint64_t from, std::uint64_t to, bool big_endian) {
+void Cursor::enter(std::uint64_t from, std::uint64_t to, bool big_endian) {
   PM_EXPECTS(from <= to && to <= size_);
   position_ = from;
   end_ = to;
@@ -26,7 +26,7 @@ void TdmsCursor::enter(std::uint64_t from, std::uint64_t to, bool big_endian) {
   broken_ = false;
 }
 
-void TdmsCursor::fetch(std::span<char> into) {
+void Cursor::fetch(std::span<char> into) {
   if (into.size() > left()) {
     broken_ = true;
     position_ = end_;
@@ -53,7 +53,7 @@ void TdmsCursor::fetch(std::span<char> into) {
   }
 }
 
-std::string TdmsCursor::take_text() {
+std::string Cursor::take_text() {
   const std::uint64_t length = take<std::uint32_t>();
   if (length > left()) {
     broken_ = true;
@@ -66,12 +66,12 @@ std::string TdmsCursor::take_text() {
   return text;
 }
 
-void TdmsCursor::skip(std::uint64_t count) {
+void Cursor::skip(std::uint64_t count) {
   broken_ = broken_ || count > left();
   position_ += std::min(count, left());
 }
 
-std::string TdmsCursor::copy_since(std::uint64_t from, std::size_t most) {
+std::string Cursor::copy_since(std::uint64_t from, std::size_t most) {
   PM_EXPECTS(from <= position_);
   const std::uint64_t size = position_ - from;
   if (size > most || broken_) return {};
@@ -81,4 +81,4 @@ std::string TdmsCursor::copy_since(std::uint64_t from, std::size_t most) {
   return copy;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

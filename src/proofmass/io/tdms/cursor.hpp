@@ -14,7 +14,7 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/io/bytes/random_bytes.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 
 /// The bytes of `T` reversed if the file's byte order differs from this machine's.
 template <class T>
@@ -29,10 +29,10 @@ template <class T>
 
 /// Reads the lead-ins and metadata of a TDMS file, a sequence of small values. Beyond the end of
 /// the region it returns zeros and is broken from then on.
-class TdmsCursor {
+class Cursor {
  public:
   /// `bytes` must outlive the cursor.
-  explicit TdmsCursor(const RandomBytes& bytes) : bytes_(bytes), size_(bytes.size()) {}
+  explicit Cursor(const RandomBytes& bytes) : bytes_(bytes), size_(bytes.size()) {}
 
   /// Precondition: from <= to <= size of the file.
   void enter(std::uint64_t from, std::uint64_t to, bool big_endian);
@@ -73,4 +73,4 @@ class TdmsCursor {
   std::size_t window_size_ = 0;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -2,7 +2,7 @@
 
 #include "proofmass/io/tdms/tdms_test_support.hpp"
 
-namespace proofmass::io::tdms_daqmx_test {
+namespace proofmass::io::tdms::daqmx_test {
 namespace {
 
 using namespace specimen;
@@ -63,4 +63,4 @@ TEST(TdmsDaqmx, AChannelOfRawDataMayTakeSeveralScalers) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::tdms_daqmx_test
+}  // namespace proofmass::io::tdms::daqmx_test

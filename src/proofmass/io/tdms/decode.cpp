@@ -7,7 +7,7 @@
 
 #include "proofmass/core/contract.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 template <std::size_t N>
@@ -55,10 +55,10 @@ void convert(const char* first, std::size_t stride, bool swap, std::span<double>
 
 void convert_instants(const char* first,
                       std::size_t stride,
-                      const TdmsEncoding& encoding,
+                      const Encoding& encoding,
                       std::span<double> into) {
   for (std::size_t i = 0; i < into.size(); ++i) {
-    const TdmsInstant instant = load_instant(first + i * stride, encoding.big_endian);
+    const Instant instant = load_instant(first + i * stride, encoding.big_endian);
     into[i] = instant.is_set() ? static_cast<double>(instant.wide_ns() - encoding.origin_ns) / 1e9
                                : std::numeric_limits<double>::quiet_NaN();
   }
@@ -71,59 +71,59 @@ void pick_bit(std::uint8_t bit, std::span<double> values) {
 
 }  // namespace
 
-TdmsInstant load_instant(const char* bytes, bool big_endian) {
+Instant load_instant(const char* bytes, bool big_endian) {
   const bool swap = big_endian == (std::endian::native == std::endian::little);
-  TdmsInstant instant;
+  Instant instant;
   instant.seconds = load<std::int64_t>(bytes + (big_endian ? 0 : 8), swap);
   instant.fraction = load<std::uint64_t>(bytes + (big_endian ? 8 : 0), swap);
   return instant;
 }
 
-void decode_tdms(const char* first,
-                 std::size_t stride,
-                 const TdmsEncoding& encoding,
-                 std::span<double> into) {
+void decode(const char* first,
+            std::size_t stride,
+            const Encoding& encoding,
+            std::span<double> into) {
   const bool swap = encoding.big_endian == (std::endian::native == std::endian::little);
   switch (encoding.kind) {
-    case TdmsKind::i8:
+    case Kind::i8:
       convert<std::int8_t>(first, stride, swap, into);
       break;
-    case TdmsKind::i16:
+    case Kind::i16:
       convert<std::int16_t>(first, stride, swap, into);
       break;
-    case TdmsKind::i32:
+    case Kind::i32:
       convert<std::int32_t>(first, stride, swap, into);
       break;
-    case TdmsKind::i64:
+    case Kind::i64:
       convert<std::int64_t>(first, stride, swap, into);
       break;
-    case TdmsKind::u8:
-    case TdmsKind::boolean:
+    case Kind::u8:
+    case Kind::boolean:
       convert<std::uint8_t>(first, stride, swap, into);
       break;
-    case TdmsKind::u16:
+    case Kind::u16:
       convert<std::uint16_t>(first, stride, swap, into);
       break;
-    case TdmsKind::u32:
+    case Kind::u32:
       convert<std::uint32_t>(first, stride, swap, into);
       break;
-    case TdmsKind::u64:
+    case Kind::u64:
       convert<std::uint64_t>(first, stride, swap, into);
       break;
-    case TdmsKind::f32:
+    case Kind::f32:
       convert<float>(first, stride, swap, into);
       break;
-    case TdmsKind::f64:
+    case Kind::f64:
       convert<double>(first, stride, swap, into);
       break;
-    case TdmsKind::instant:
+    case Kind::instant:
       convert_instants(first, stride, encoding, into);
       break;
-    case TdmsKind::text:
-    case TdmsKind::other:
+    case Kind::text:
+    case Kind::other:
       PM_EXPECTS(false);
   }
-  if (encoding.bit != TdmsScaler::no_bit) pick_bit(encoding.bit, into);
+  if (encoding.bit != Scaler::no_bit) pick_bit(encoding.bit, into);
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -6,18 +6,18 @@
 
 #include "proofmass/io/tdms/column.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 /// A column of the table: its inputs and their conversion.
 struct Reading {
-  std::vector<TdmsColumn> sources;
-  std::optional<TdmsScaling> scaling;
+  std::vector<Column> sources;
+  std::optional<Scaling> scaling;
 };
 
-class TdmsTable final : public TableReader {
+class Table final : public TableReader {
  public:
-  TdmsTable(std::shared_ptr<const TdmsContents> contents, const TdmsGroup& group)
+  Table(std::shared_ptr<const Contents> contents, const Group& group)
       : contents_(std::move(contents)), group_(group), window_(*contents_->bytes) {
     head_.format = "TDMS";
     head_.columns = group.channels.size();
@@ -59,7 +59,7 @@ class TdmsTable final : public TableReader {
  private:
   Status add_column(std::size_t c) {
     const std::uint32_t channel = group_.channels[c];
-    const TdmsMap& map = contents_->map;
+    const Map& map = contents_->map;
     Reading reading;
     auto scaling = scaling_of(map, channel);
     if (scaling) {
@@ -77,9 +77,9 @@ class TdmsTable final : public TableReader {
     } else {
       reading.sources.emplace_back(map, channel, scalers.empty() ? 0 : scalers.front());
     }
-    if (map.objects[channel].kind == TdmsKind::instant)
+    if (map.objects[channel].kind == Kind::instant)
       if (const Status counted = count_from_first(c, reading); !counted) return counted;
-    if (group_.time_column == c && map.objects[channel].kind != TdmsKind::instant)
+    if (group_.time_column == c && map.objects[channel].kind != Kind::instant)
       head_.stamps = DeclaredStamps{c, *parse_unit("s"), {Int128{*group_.start_ns}, -9}};
     readings_.push_back(std::move(reading));
     return Done{};
@@ -118,7 +118,7 @@ class TdmsTable final : public TableReader {
   [[nodiscard]] std::size_t comfortable_rows() const {
     std::size_t rows = std::size_t{1} << 14;
     for (const Reading& reading : readings_)
-      for (const TdmsColumn& source : reading.sources) rows = std::min(rows, source.comfortable());
+      for (const Column& source : reading.sources) rows = std::min(rows, source.comfortable());
     return rows;
   }
 
@@ -134,9 +134,9 @@ class TdmsTable final : public TableReader {
     return Done{};
   }
 
-  std::shared_ptr<const TdmsContents> contents_;
-  const TdmsGroup& group_;
-  TdmsWindow window_;
+  std::shared_ptr<const Contents> contents_;
+  const Group& group_;
+  Window window_;
   TableHead head_;
   std::vector<Reading> readings_;
   std::vector<std::vector<double>> stored_;
@@ -146,7 +146,7 @@ class TdmsTable final : public TableReader {
 constexpr std::size_t longest_text = 300;
 
 /// Descriptive texts of the file: author, title.
-std::string self_description(const TdmsProperties& properties) {
+std::string self_description(const Properties& properties) {
   std::string words;
   for (const auto& [name, value] : properties) {
     const auto* text = std::get_if<std::string>(&value);
@@ -160,10 +160,10 @@ std::string self_description(const TdmsProperties& properties) {
   return words;
 }
 
-std::vector<Note> notes_of(const TdmsMap& map, const std::vector<TdmsGroup>& groups) {
+std::vector<Note> notes_of(const Map& map, const std::vector<Group>& groups) {
   std::vector<Note> notes;
   std::uint64_t most_rows = 0;
-  for (const TdmsGroup& group : groups) most_rows = std::max(most_rows, group.rows);
+  for (const Group& group : groups) most_rows = std::max(most_rows, group.rows);
   std::string segments = fmt::format("{} segment{}", map.segments, map.segments == 1 ? "" : "s");
   constexpr std::uint64_t few_segments = 100;
   constexpr std::uint64_t few_values = 100;
@@ -182,16 +182,15 @@ std::vector<Note> notes_of(const TdmsMap& map, const std::vector<TdmsGroup>& gro
 
 }  // namespace
 
-Result<std::shared_ptr<const TdmsContents>> read_tdms_contents(
-    std::unique_ptr<const RandomBytes> bytes) {
-  auto map = map_tdms(*bytes);
+Result<std::shared_ptr<const Contents>> read_contents(std::unique_ptr<const RandomBytes> bytes) {
+  auto map = map_file(*bytes);
   if (!map) return map.error();
-  auto contents = std::make_shared<TdmsContents>();
+  auto contents = std::make_shared<Contents>();
   contents->bytes = std::move(bytes);
   contents->map = std::move(map).value();
   contents->groups = group_channels(contents->map);
   contents->notes = notes_of(contents->map, contents->groups);
-  if (!contents->groups.empty()) return std::shared_ptr<const TdmsContents>(std::move(contents));
+  if (!contents->groups.empty()) return std::shared_ptr<const Contents>(std::move(contents));
   for (const Note& note : contents->notes)
     if (note.severity != Severity::info)
       return Error{Errc::too_few_samples, "holds no values: " + note.text};
@@ -199,12 +198,12 @@ Result<std::shared_ptr<const TdmsContents>> read_tdms_contents(
                fmt::format("holds no values in its {} segments", contents->map.segments)};
 }
 
-Result<std::unique_ptr<TableReader>> open_tdms_table(std::shared_ptr<const TdmsContents> contents,
-                                                     std::size_t group) {
-  const TdmsGroup& chosen = contents->groups[group];
-  auto table = std::make_unique<TdmsTable>(std::move(contents), chosen);
+Result<std::unique_ptr<TableReader>> open_table(std::shared_ptr<const Contents> contents,
+                                                std::size_t group) {
+  const Group& chosen = contents->groups[group];
+  auto table = std::make_unique<Table>(std::move(contents), chosen);
   if (const Status ready = table->prepare(); !ready) return ready.error();
   return std::unique_ptr<TableReader>(std::move(table));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -5,7 +5,7 @@
 
 #include "proofmass/io/tdms/cursor.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 constexpr std::uint32_t format_changing_scaler = 0x1269;
@@ -14,14 +14,14 @@ constexpr std::uint32_t digital_line_scaler = 0x126A;
 /// sample format instead of the one found in files.
 constexpr std::uint32_t digital_line_scaler_as_documented = 0x1369;
 
-bool is_small_integer(TdmsKind kind) {
-  return kind != TdmsKind::i64 && kind != TdmsKind::u64 && kind <= TdmsKind::u32;
+bool is_small_integer(Kind kind) {
+  return kind != Kind::i64 && kind != Kind::u64 && kind <= Kind::u32;
 }
 
-Result<TdmsScaler> take_scaler(TdmsCursor& cursor, std::uint32_t header) {
+Result<Scaler> take_scaler(Cursor& cursor, std::uint32_t header) {
   const bool is_digital = header != format_changing_scaler;
   const std::uint64_t at = cursor.position();
-  TdmsScaler scaler;
+  Scaler scaler;
   const auto kind = daqmx_kind(cursor.take<std::uint32_t>());
   scaler.buffer = cursor.take<std::uint32_t>();
   scaler.offset = cursor.take<std::uint32_t>();
@@ -34,12 +34,12 @@ Result<TdmsScaler> take_scaler(TdmsCursor& cursor, std::uint32_t header) {
   const bool is_known = kind && (!is_digital || is_small_integer(*kind));
   if (!is_known && !cursor.broken())
     return at_byte(at, "a DAQmx scaler of a type that is not known");
-  scaler.kind = kind.value_or(TdmsKind::u8);
+  scaler.kind = kind.value_or(Kind::u8);
   return scaler;
 }
 
 /// The remainder of a DAQmx index after its dimension.
-Status read_daqmx(TdmsCursor& cursor, std::uint32_t header, TdmsIndex& index) {
+Status read_daqmx(Cursor& cursor, std::uint32_t header, Index& index) {
   index.values = cursor.take<std::uint64_t>();
   const auto scalers = cursor.take<std::uint32_t>();
   for (std::uint32_t i = 0; i < scalers && !cursor.broken(); ++i) {
@@ -63,14 +63,14 @@ bool is_daqmx(std::uint32_t header) {
 
 }  // namespace
 
-Result<TdmsIndex> read_tdms_index(TdmsCursor& cursor, std::uint32_t header) {
+Result<Index> take_index(Cursor& cursor, std::uint32_t header) {
   constexpr std::uint32_t longest = 64;  // 20 and 28 are usual
   const std::uint64_t at = cursor.position();
   if (header > longest && !is_daqmx(header))
     return at_byte(at, fmt::format("0x{:X} is not a known raw data index", header));
-  TdmsIndex index;
+  Index index;
   index.type = cursor.take<std::uint32_t>();
-  index.kind = tdms_kind(index.type);
+  index.kind = kind_of(index.type);
   const auto dimension = cursor.take<std::uint32_t>();
   if (dimension != 1 && !cursor.broken())
     return at_byte(at, fmt::format("a channel of {} dimensions: expected 1", dimension));
@@ -79,17 +79,17 @@ Result<TdmsIndex> read_tdms_index(TdmsCursor& cursor, std::uint32_t header) {
     return index;
   }
   index.values = cursor.take<std::uint64_t>();
-  if (index.kind == TdmsKind::text) index.bytes = cursor.take<std::uint64_t>();
+  if (index.kind == Kind::text) index.bytes = cursor.take<std::uint64_t>();
   return index;
 }
 
-std::string key_of(const TdmsIndex& index) {
+std::string key_of(const Index& index) {
   std::string key = fmt::format("{:x},{:x},{:x}", index.type, index.values, index.bytes);
-  for (const TdmsScaler& scaler : index.scalers)
+  for (const Scaler& scaler : index.scalers)
     key += fmt::format(";{:x},{:x},{:x},{:x},{:x}", static_cast<unsigned>(scaler.kind),
                        scaler.buffer, scaler.offset, static_cast<unsigned>(scaler.bit), scaler.id);
   for (const std::uint32_t width : index.widths) key += fmt::format("/{:x}", width);
   return key;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <tuple>
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 constexpr std::size_t most_pieces = std::size_t{1} << 20;
@@ -26,14 +26,14 @@ Error too_large() {
   return {Errc::corrupt, "claims more values than any file can hold"};
 }
 
-std::uint64_t value_bytes(const TdmsIndex& index, const TdmsOrder& order) {
-  if (index.kind != TdmsKind::other) return bytes_of(index.kind);
+std::uint64_t value_bytes(const Index& index, const RawDataOrder& order) {
+  if (index.kind != Kind::other) return bytes_per_value(index.kind);
   const std::size_t known = bytes_of_other(index.type);
   return known != 0 ? known : order.other_bytes;
 }
 
-TdmsEntry entry_of(const TdmsPart& part, const TdmsLayout& layout) {
-  TdmsEntry entry;
+Entry entry_of(const Part& part, const Layout& layout) {
+  Entry entry;
   entry.channel = part.channel;
   entry.kind = part.index->kind;
   entry.first_piece = static_cast<std::uint32_t>(layout.pieces.size());
@@ -41,19 +41,19 @@ TdmsEntry entry_of(const TdmsPart& part, const TdmsLayout& layout) {
   return entry;
 }
 
-Result<TdmsLayout> lay_out_contiguous(std::span<const TdmsPart> parts, const TdmsOrder& order) {
-  TdmsLayout layout;
+Result<Layout> lay_out_contiguous(std::span<const Part> parts, const RawDataOrder& order) {
+  Layout layout;
   layout.is_contiguous = true;
   Checked at;
-  for (const TdmsPart& part : parts) {
-    const TdmsIndex& index = *part.index;
-    TdmsEntry entry = entry_of(part, layout);
-    if (index.kind == TdmsKind::text) {
+  for (const Part& part : parts) {
+    const Index& index = *part.index;
+    Entry entry = entry_of(part, layout);
+    if (index.kind == Kind::text) {
       layout.is_contiguous = false;
       at.add(index.bytes);
     } else {
       const std::uint64_t size = value_bytes(index, order);
-      if (index.kind != TdmsKind::other) {
+      if (index.kind != Kind::other) {
         layout.pieces.push_back({at.value, size, index.values});
         entry.pieces = 1;
       }
@@ -74,19 +74,19 @@ struct Band {
   std::uint64_t to = 0;
 };
 
-std::uint64_t width_of_row(std::span<const TdmsPart> parts,
-                           const TdmsOrder& order,
+std::uint64_t width_of_row(std::span<const Part> parts,
+                           const RawDataOrder& order,
                            std::uint64_t row) {
   std::uint64_t width = 0;
-  for (const TdmsPart& part : parts)
+  for (const Part& part : parts)
     if (part.index->values > row) width += value_bytes(*part.index, order);
   return width;
 }
 
 /// If channels differ in length, those that have ended are omitted from the following rows.
-Result<std::vector<Band>> bands_of(std::span<const TdmsPart> parts, const TdmsOrder& order) {
+Result<std::vector<Band>> bands_of(std::span<const Part> parts, const RawDataOrder& order) {
   std::vector<std::uint64_t> ends;
-  for (const TdmsPart& part : parts) ends.push_back(part.index->values);
+  for (const Part& part : parts) ends.push_back(part.index->values);
   std::ranges::sort(ends);
   ends.erase(std::ranges::unique(ends).begin(), ends.end());
   if (ends.size() > most_pieces / parts.size())
@@ -105,20 +105,20 @@ Result<std::vector<Band>> bands_of(std::span<const TdmsPart> parts, const TdmsOr
 }
 
 /// Rows of one value per channel.
-Result<TdmsLayout> lay_out_interleaved(std::span<const TdmsPart> parts, const TdmsOrder& order) {
-  const bool has_text = std::ranges::any_of(
-      parts, [](const TdmsPart& part) { return part.index->kind == TdmsKind::text; });
+Result<Layout> lay_out_interleaved(std::span<const Part> parts, const RawDataOrder& order) {
+  const bool has_text =
+      std::ranges::any_of(parts, [](const Part& part) { return part.index->kind == Kind::text; });
   if (has_text) return Error{Errc::corrupt, "has interleaved text, which cannot be"};
   auto found = bands_of(parts, order);
   if (!found) return found.error();
   std::vector<Band> bands = std::move(found).value();
-  TdmsLayout layout;
+  Layout layout;
   layout.chunk_bytes = bands.back().offset;
-  for (const TdmsPart& part : parts) {
-    TdmsEntry entry = entry_of(part, layout);
+  for (const Part& part : parts) {
+    Entry entry = entry_of(part, layout);
     for (Band& band : bands) {
       if (part.index->values <= band.from) break;
-      if (part.index->kind != TdmsKind::other) {
+      if (part.index->kind != Kind::other) {
         layout.pieces.push_back({band.offset, band.width, band.to - band.from});
         ++entry.pieces;
       }
@@ -130,25 +130,25 @@ Result<TdmsLayout> lay_out_interleaved(std::span<const TdmsPart> parts, const Td
 }
 
 /// Checks that a channel of DAQmx raw data fits buffers of these widths.
-Status check_scalers(const TdmsIndex& index, const std::vector<std::uint32_t>& widths) {
+Status check_scalers(const Index& index, const std::vector<std::uint32_t>& widths) {
   if (index.scalers.empty())
     return Error{Errc::unsupported, "mixes DAQmx raw data with other data"};
   if (index.widths != widths)
     return Error{Errc::corrupt, "has channels that disagree on the width of DAQmx raw data"};
-  for (const TdmsScaler& scaler : index.scalers)
+  for (const Scaler& scaler : index.scalers)
     if (scaler.buffer >= widths.size() ||
-        std::uint64_t{scaler.offset} + bytes_of(scaler.kind) > widths[scaler.buffer])
+        std::uint64_t{scaler.offset} + bytes_per_value(scaler.kind) > widths[scaler.buffer])
       return Error{Errc::corrupt, "has a DAQmx scaler that lies outside its buffer"};
   return Done{};
 }
 
 /// Consecutive buffers of rows, which contain values of several channels at fixed positions.
-Result<TdmsLayout> lay_out_daqmx(std::span<const TdmsPart> parts) {
+Result<Layout> lay_out_daqmx(std::span<const Part> parts) {
   const std::vector<std::uint32_t>& widths = parts.front().index->widths;
   std::vector<std::uint64_t> rows(widths.size());
-  for (const TdmsPart& part : parts) {
+  for (const Part& part : parts) {
     if (const Status fits = check_scalers(*part.index, widths); !fits) return fits.error();
-    for (const TdmsScaler& scaler : part.index->scalers)
+    for (const Scaler& scaler : part.index->scalers)
       rows[scaler.buffer] = std::max(rows[scaler.buffer], part.index->values);
   }
   Checked at;
@@ -158,12 +158,12 @@ Result<TdmsLayout> lay_out_daqmx(std::span<const TdmsPart> parts) {
     at.add_product(rows[b], widths[b]);
   }
   if (at.overflow) return too_large();
-  TdmsLayout layout;
+  Layout layout;
   layout.is_daqmx = true;
   layout.chunk_bytes = at.value;
-  for (const TdmsPart& part : parts) {
-    for (const TdmsScaler& scaler : part.index->scalers) {
-      TdmsEntry entry = entry_of(part, layout);
+  for (const Part& part : parts) {
+    for (const Scaler& scaler : part.index->scalers) {
+      Entry entry = entry_of(part, layout);
       entry.scaler = scaler.id;
       entry.kind = scaler.kind;
       entry.bit = scaler.bit;
@@ -178,41 +178,41 @@ Result<TdmsLayout> lay_out_daqmx(std::span<const TdmsPart> parts) {
 
 }  // namespace
 
-std::span<const TdmsEntry> TdmsLayout::of(std::uint32_t channel) const {
-  const auto found = std::ranges::equal_range(entries, channel, {}, &TdmsEntry::channel);
+std::span<const Entry> Layout::of(std::uint32_t channel) const {
+  const auto found = std::ranges::equal_range(entries, channel, {}, &Entry::channel);
   return {found.begin(), found.end()};
 }
 
-Result<TdmsLayout> lay_out(std::span<const TdmsPart> parts, const TdmsOrder& order) {
-  if (parts.empty()) return TdmsLayout{};
-  for (const TdmsPart& part : parts)
-    if (part.index->kind == TdmsKind::other && part.index->scalers.empty() &&
+Result<Layout> lay_out(std::span<const Part> parts, const RawDataOrder& order) {
+  if (parts.empty()) return Layout{};
+  for (const Part& part : parts)
+    if (part.index->kind == Kind::other && part.index->scalers.empty() &&
         value_bytes(*part.index, order) == 0)
       return Error{Errc::unsupported, fmt::format("has {}, whose size is not known",
                                                   words_for_type(part.index->type))};
   const bool is_daqmx =
-      std::ranges::any_of(parts, [](const TdmsPart& part) { return !part.index->scalers.empty(); });
+      std::ranges::any_of(parts, [](const Part& part) { return !part.index->scalers.empty(); });
   auto made = is_daqmx            ? lay_out_daqmx(parts)
               : order.interleaved ? lay_out_interleaved(parts, order)
                                   : lay_out_contiguous(parts, order);
   if (!made) return made;
-  TdmsLayout layout = std::move(made).value();
+  Layout layout = std::move(made).value();
   layout.big_endian = order.big_endian;
-  std::ranges::sort(layout.entries, {}, [](const TdmsEntry& entry) {
+  std::ranges::sort(layout.entries, {}, [](const Entry& entry) {
     return std::tuple(entry.channel, entry.scaler, entry.first_piece);
   });
   return layout;
 }
 
-std::uint64_t infer_other_bytes(std::span<const TdmsPart> parts, std::uint64_t data_bytes) {
+std::uint64_t infer_other_bytes(std::span<const Part> parts, std::uint64_t data_bytes) {
   Checked known;
   Checked unknown;
-  for (const TdmsPart& part : parts) {
-    const TdmsIndex& index = *part.index;
+  for (const Part& part : parts) {
+    const Index& index = *part.index;
     const std::uint64_t size = value_bytes(index, {});
     known.add(index.bytes);
     known.add_product(index.values, size);
-    if (size == 0 && index.kind == TdmsKind::other) unknown.add(index.values);
+    if (size == 0 && index.kind == Kind::other) unknown.add(index.values);
   }
   for (const std::uint64_t size : {16, 10, 12, 8, 4, 2, 1}) {
     Checked chunk = known;
@@ -224,4 +224,4 @@ std::uint64_t infer_other_bytes(std::span<const TdmsPart> parts, std::uint64_t d
   return 0;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -5,10 +5,10 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/io/tdms/cursor.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 
 /// The 28 bytes at the beginning of a segment, as file positions.
-struct TdmsLeadIn {
+struct LeadIn {
   static constexpr std::uint64_t bytes = 28;
   enum ContentsBit : std::uint32_t {
     metadata = 1U << 1,
@@ -31,8 +31,6 @@ struct TdmsLeadIn {
 
 /// Reads the lead-in at byte `at` of a file of `size` bytes.
 /// Errors: corrupt, unsupported (an index file), with the byte.
-[[nodiscard]] Result<TdmsLeadIn> take_tdms_lead_in(TdmsCursor& cursor,
-                                                   std::uint64_t at,
-                                                   std::uint64_t size);
+[[nodiscard]] Result<LeadIn> take_lead_in(Cursor& cursor, std::uint64_t at, std::uint64_t size);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

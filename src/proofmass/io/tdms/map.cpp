@@ -10,7 +10,7 @@
 #include "proofmass/io/tdms/lead_in.hpp"
 #include "proofmass/io/tdms/metadata.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 /// Limit for all layouts together: twenty channels may change the lengths of their chunks 25 000
@@ -18,11 +18,11 @@ namespace {
 constexpr std::size_t most_layout_entries = std::size_t{1} << 20;
 constexpr std::size_t longest_compared = 16 << 10;
 
-class TdmsWalk {
+class Walk {
  public:
-  explicit TdmsWalk(const RandomBytes& bytes) : size_(bytes.size()), cursor_(bytes) {}
+  explicit Walk(const RandomBytes& bytes) : size_(bytes.size()), cursor_(bytes) {}
 
-  Result<TdmsMap> run() {
+  Result<Map> run() {
     for (std::uint64_t at = 0; at < size_;) {
       const auto segment = take_segment(at);
       if (cursor_.failure()) return *cursor_.failure();
@@ -49,7 +49,7 @@ class TdmsWalk {
 
   /// Reads one segment; returns the start of the next.
   Result<std::uint64_t> take_segment(std::uint64_t at) {
-    const auto lead = take_tdms_lead_in(cursor_, at, size_);
+    const auto lead = take_lead_in(cursor_, at, size_);
     if (!lead) return lead.error();
     if (lead->version != 4712 && lead->version != 4713 && !noted_version_) {
       noted_version_ = true;
@@ -57,18 +57,18 @@ class TdmsWalk {
                                                            "4713 are known",
                                                            at + 8, lead->version)});
     }
-    if (lead->has(TdmsLeadIn::metadata))
+    if (lead->has(LeadIn::metadata))
       if (const Status read = take_metadata(*lead); !read) return read.error();
     ++map_.segments;
     const std::size_t notes_before = map_.notes.size();
-    if (lead->has(TdmsLeadIn::raw_data) && lead->end > lead->raw_at)
+    if (lead->has(LeadIn::raw_data) && lead->end > lead->raw_at)
       if (const Status added = add_data(*lead); !added) return added.error();
     if (!lead->is_complete && map_.notes.size() == notes_before) note_end(*lead);
     return lead->end;
   }
 
   /// Notes a file that ends with a whole chunk, but not where its last segment should end.
-  void note_end(const TdmsLeadIn& lead) {
+  void note_end(const LeadIn& lead) {
     if (lead.is_unfinished)
       map_.notes.push_back(
           {Severity::warning,
@@ -81,21 +81,21 @@ class TdmsWalk {
            fmt::format("byte {}: the file breaks off before the end of its last segment", size_)});
   }
 
-  Status take_metadata(const TdmsLeadIn& lead) {
-    const std::uint64_t from = lead.at + TdmsLeadIn::bytes;
+  Status take_metadata(const LeadIn& lead) {
+    const std::uint64_t from = lead.at + LeadIn::bytes;
     const std::uint64_t length = lead.raw_at - from;
-    cursor_.enter(from, lead.end, lead.has(TdmsLeadIn::big_endian));
+    cursor_.enter(from, lead.end, lead.has(LeadIn::big_endian));
     std::string same;
     if (length > 0 && length <= longest_compared) {
       cursor_.skip(length);
       same = cursor_.copy_since(from, longest_compared);
       if (same == previous_metadata_ && lead.contents == previous_contents_) return Done{};
-      cursor_.enter(from, lead.end, lead.has(TdmsLeadIn::big_endian));
+      cursor_.enter(from, lead.end, lead.has(LeadIn::big_endian));
     }
     layout_.reset();
-    const Status read = metadata_.read(cursor_, lead.has(TdmsLeadIn::new_list));
+    const Status read = metadata_.read(cursor_, lead.has(LeadIn::new_list));
     if (!read) return read;
-    const bool overran = lead.has(TdmsLeadIn::raw_data) && cursor_.position() > lead.raw_at;
+    const bool overran = lead.has(LeadIn::raw_data) && cursor_.position() > lead.raw_at;
     if (cursor_.broken() || overran)
       return at_byte(lead.at, lead.is_complete
                                   ? "the metadata of the segment are longer than it says"
@@ -106,15 +106,14 @@ class TdmsWalk {
   }
 
   /// The layout of the current list of objects, computed only if it is new.
-  Result<std::uint32_t> layout_of(const TdmsLeadIn& lead) {
-    const std::uint32_t order_bits =
-        lead.contents & (TdmsLeadIn::interleaved | TdmsLeadIn::big_endian);
+  Result<std::uint32_t> layout_of(const LeadIn& lead) {
+    const std::uint32_t order_bits = lead.contents & (LeadIn::interleaved | LeadIn::big_endian);
     if (layout_ && order_bits == layout_bits_) return *layout_;
-    const std::vector<TdmsPart> parts = metadata_.parts();
-    TdmsOrder order{lead.has(TdmsLeadIn::interleaved), lead.has(TdmsLeadIn::big_endian)};
+    const std::vector<Part> parts = metadata_.parts();
+    RawDataOrder order{lead.has(LeadIn::interleaved), lead.has(LeadIn::big_endian)};
     order.other_bytes = infer_other_bytes(parts, lead.end - lead.raw_at);
     const bool has_other = std::ranges::any_of(
-        parts, [](const TdmsPart& part) { return part.index->kind == TdmsKind::other; });
+        parts, [](const Part& part) { return part.index->kind == Kind::other; });
     if (!has_other) order.other_bytes = 0;
     const std::string key = fmt::format("{}/{}/", order_bits, order.other_bytes) + metadata_.key();
     auto found = by_key_.find(key);
@@ -134,7 +133,7 @@ class TdmsWalk {
     return {error.code, fmt::format("byte {}: the segment {}", at, error.message)};
   }
 
-  Result<std::uint32_t> keep(TdmsLayout layout, std::uint64_t at) {
+  Result<std::uint32_t> keep(Layout layout, std::uint64_t at) {
     layout_entries_ += layout.size();
     if (layout_entries_ > most_layout_entries)
       return Error{Errc::unsupported,
@@ -143,7 +142,7 @@ class TdmsWalk {
     return static_cast<std::uint32_t>(map_.layouts.size() - 1);
   }
 
-  Status add_data(const TdmsLeadIn& lead) {
+  Status add_data(const LeadIn& lead) {
     const auto layout = layout_of(lead);
     if (!layout) return layout.error();
     const std::uint64_t data = lead.end - lead.raw_at;
@@ -161,8 +160,8 @@ class TdmsWalk {
   }
 
   /// Adds the incomplete last chunk of a segment.
-  Status add_rest(const TdmsLeadIn& lead, std::uint32_t whole, std::uint64_t rest) {
-    std::optional<TdmsLayout> part;
+  Status add_rest(const LeadIn& lead, std::uint32_t whole, std::uint64_t rest) {
+    std::optional<Layout> part;
     if (lead.is_complete) part = in_proportion(map_.layouts[whole], rest);
     const bool even = part.has_value();
     if (!even) part = broken_off(map_.layouts[whole], rest);
@@ -173,11 +172,11 @@ class TdmsWalk {
     return Done{};
   }
 
-  void note_broken(const TdmsLeadIn& lead, std::uint32_t whole, std::uint32_t part) {
+  void note_broken(const LeadIn& lead, std::uint32_t whole, std::uint32_t part) {
     std::uint64_t lost = 0;
     std::uint32_t channels = 0;
     for (std::size_t i = 0; i < map_.layouts[whole].entries.size(); ++i) {
-      const TdmsEntry& entry = map_.layouts[whole].entries[i];
+      const Entry& entry = map_.layouts[whole].entries[i];
       const std::uint64_t gone = entry.values - map_.layouts[part].entries[i].values;
       if (i > 0 && map_.layouts[whole].entries[i - 1].channel == entry.channel) continue;
       if (gone == 0) continue;
@@ -203,9 +202,9 @@ class TdmsWalk {
   }
 
   /// Extends the previous run if the new one continues it.
-  void add_run(const TdmsRun& next) {
+  void add_run(const Run& next) {
     if (!map_.runs.empty()) {
-      TdmsRun& last = map_.runs.back();
+      Run& last = map_.runs.back();
       const std::uint64_t distance =
           next.data_at - (last.data_at + (last.segments - 1) * last.distance);
       if (last.layout == next.layout && last.chunks == next.chunks &&
@@ -220,25 +219,25 @@ class TdmsWalk {
 
   void count_values() {
     std::vector<std::uint64_t> chunks(map_.layouts.size());
-    for (const TdmsRun& run : map_.runs) chunks[run.layout] += run.segments * run.chunks;
+    for (const Run& run : map_.runs) chunks[run.layout] += run.segments * run.chunks;
     for (std::size_t l = 0; l < chunks.size(); ++l) {
       const auto& entries = map_.layouts[l].entries;
       for (std::size_t i = 0; i < entries.size(); ++i) {
         if (i > 0 && entries[i].channel == entries[i - 1].channel) continue;
-        TdmsObject& object = metadata_.objects()[entries[i].channel];
+        Object& object = metadata_.objects()[entries[i].channel];
         std::uint64_t values = 0;
         if (__builtin_mul_overflow(entries[i].values, chunks[l], &values) || values > size_)
           values = size_;
         object.values += values;
       }
     }
-    for (TdmsObject& object : metadata_.objects()) object.promised += object.values;
+    for (Object& object : metadata_.objects()) object.promised += object.values;
   }
 
   std::uint64_t size_;
-  TdmsCursor cursor_;
-  TdmsMetadata metadata_;
-  TdmsMap map_;
+  Cursor cursor_;
+  Metadata metadata_;
+  Map map_;
   std::string previous_metadata_;
   std::uint32_t previous_contents_ = 0;
   std::unordered_map<std::string, std::uint32_t> by_key_;
@@ -250,14 +249,14 @@ class TdmsWalk {
 
 }  // namespace
 
-const TdmsProperties& TdmsMap::properties_of(const std::string& group) const {
-  static const TdmsProperties none;
+const Properties& Map::properties_of(const std::string& group) const {
+  static const Properties none;
   const auto found = groups.find(group);
   return found == groups.end() ? none : objects[found->second].properties;
 }
 
-Result<TdmsMap> map_tdms(const RandomBytes& bytes) {
-  return TdmsWalk(bytes).run();
+Result<Map> map_file(const RandomBytes& bytes) {
+  return Walk(bytes).run();
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -7,7 +7,7 @@
 #include "proofmass/io/tdms/index.hpp"
 #include "proofmass/io/tdms/properties.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 constexpr std::uint32_t no_values = 0xFFFFFFFF;
@@ -33,12 +33,12 @@ std::vector<std::string> names_in(std::string_view path) {
 
 }  // namespace
 
-std::uint32_t TdmsMetadata::object_of(const std::string& path) {
+std::uint32_t Metadata::object_of(const std::string& path) {
   const auto [found, is_new] =
       by_path_.try_emplace(path, static_cast<std::uint32_t>(objects_.size()));
   if (!is_new) return found->second;
   std::vector<std::string> names = names_in(path);
-  TdmsObject object;
+  Object object;
   if (!names.empty()) object.group = std::move(names[0]);
   if (names.size() > 1) object.name = std::move(names[1]);
   if (object.group.empty() && path != "/") object.name = path;
@@ -49,20 +49,20 @@ std::uint32_t TdmsMetadata::object_of(const std::string& path) {
   return found->second;
 }
 
-std::uint32_t TdmsMetadata::known_index(const TdmsIndex& index) {
+std::uint32_t Metadata::known_index(const Index& index) {
   const auto [found, is_new] =
       by_index_.try_emplace(key_of(index), static_cast<std::uint32_t>(indices_.size()));
-  if (is_new) indices_.push_back(std::make_unique<const TdmsIndex>(index));
+  if (is_new) indices_.push_back(std::make_unique<const Index>(index));
   return found->second;
 }
 
-void TdmsMetadata::list(std::uint32_t object, std::optional<std::uint32_t> index) {
+void Metadata::list(std::uint32_t object, std::optional<std::uint32_t> index) {
   if (!is_listed_[object]) listed_.push_back(object);
   is_listed_[object] = true;
   index_now_[object] = index;
 }
 
-Status TdmsMetadata::read_index(TdmsCursor& cursor, std::uint32_t object) {
+Status Metadata::read_index(Cursor& cursor, std::uint32_t object) {
   const std::uint64_t at = cursor.position();
   const auto header = cursor.take<std::uint32_t>();
   if (header == no_values) {
@@ -75,7 +75,7 @@ Status TdmsMetadata::read_index(TdmsCursor& cursor, std::uint32_t object) {
     list(object, last_index_[object]);
     return Done{};
   }
-  const auto read = read_tdms_index(cursor, header);
+  const auto read = take_index(cursor, header);
   if (!read) return read.error();
   if (cursor.broken()) return Done{};
   last_index_[object] = known_index(*read);
@@ -84,28 +84,26 @@ Status TdmsMetadata::read_index(TdmsCursor& cursor, std::uint32_t object) {
   return Done{};
 }
 
-void TdmsMetadata::note_kind(std::uint32_t object, const TdmsIndex& index) {
-  TdmsObject& known = objects_[object];
+void Metadata::note_kind(std::uint32_t object, const Index& index) {
+  Object& known = objects_[object];
   if (!known.has_index) {
     known.kind = index.kind;
     known.type = index.type;
   }
-  const auto class_of = [](TdmsKind kind) {
-    return kind < TdmsKind::instant ? TdmsKind::f64 : kind;
-  };
+  const auto class_of = [](Kind kind) { return kind < Kind::instant ? Kind::f64 : kind; };
   known.changes_kind = known.changes_kind || class_of(known.kind) != class_of(index.kind);
   known.has_index = true;
 }
 
-Status TdmsMetadata::read_object(TdmsCursor& cursor) {
+Status Metadata::read_object(Cursor& cursor) {
   const std::string path = cursor.take_text();
   if (cursor.broken()) return Done{};
   const std::uint32_t object = object_of(path);
   if (const Status read = read_index(cursor, object); !read) return read;
-  return read_tdms_properties(cursor, objects_[object].properties);
+  return read_properties(cursor, objects_[object].properties);
 }
 
-Status TdmsMetadata::read(TdmsCursor& cursor, bool new_list) {
+Status Metadata::read(Cursor& cursor, bool new_list) {
   if (new_list) {
     for (const std::uint32_t object : listed_) is_listed_[object] = false;
     listed_.clear();
@@ -116,14 +114,14 @@ Status TdmsMetadata::read(TdmsCursor& cursor, bool new_list) {
   return Done{};
 }
 
-std::vector<TdmsPart> TdmsMetadata::parts() const {
-  std::vector<TdmsPart> parts;
+std::vector<Part> Metadata::parts() const {
+  std::vector<Part> parts;
   for (const std::uint32_t object : listed_)
     if (index_now_[object]) parts.push_back({object, indices_[*index_now_[object]].get()});
   return parts;
 }
 
-std::string TdmsMetadata::key() const {
+std::string Metadata::key() const {
   std::string key;
   for (const std::uint32_t object : listed_) {
     if (!index_now_[object]) continue;
@@ -133,4 +131,4 @@ std::string TdmsMetadata::key() const {
   return key;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

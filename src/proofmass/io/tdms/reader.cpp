@@ -5,11 +5,11 @@
 #include "proofmass/io/reading/labelled_reader.hpp"
 #include "proofmass/io/tdms/group_reader.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 /// The labels in our own files: properties label[0]_text, label[0]_first, label[0]_last, …
-std::vector<Label> labels_in(const TdmsProperties& properties) {
+std::vector<Label> labels_in(const Properties& properties) {
   constexpr double most_samples = 0x1p53;
   std::vector<Label> labels;
   for (std::size_t i = 0;; ++i) {
@@ -23,43 +23,43 @@ std::vector<Label> labels_in(const TdmsProperties& properties) {
   }
 }
 
-class TdmsFile final : public TableFile {
+class File final : public TableFile {
  public:
-  explicit TdmsFile(std::shared_ptr<const TdmsContents> contents) : contents_(std::move(contents)) {
-    for (const TdmsGroup& group : contents_->groups)
+  explicit File(std::shared_ptr<const Contents> contents) : contents_(std::move(contents)) {
+    for (const Group& group : contents_->groups)
       summaries_.push_back({group.name, group.headings, group.rows, group.rate_hz});
   }
 
   [[nodiscard]] std::span<const TableSummary> tables() const override { return summaries_; }
   [[nodiscard]] Result<std::unique_ptr<RecordingReader>> open(std::size_t table,
                                                               const ReadOptions& options) override {
-    auto opened = open_tdms_table(contents_, table);
+    auto opened = open_table(contents_, table);
     if (!opened) return opened.error();
     auto reader = recording_reader_of(std::move(opened).value(), options);
     if (!reader || contents_->groups.size() > 1) return reader;
-    const TdmsProperties& said = contents_->map.properties_of("");
+    const Properties& said = contents_->map.properties_of("");
     return labelled(std::move(reader).value(), labels_in(said), text_of(said, "label_channel"),
                     contents_->groups[table].rows);
   }
 
  private:
-  std::shared_ptr<const TdmsContents> contents_;
+  std::shared_ptr<const Contents> contents_;
   std::vector<TableSummary> summaries_;
 };
 
 }  // namespace
 
-bool claims_tdms(std::string_view head, std::string_view /*file_name*/) {
+bool claims(std::string_view head, std::string_view /*file_name*/) {
   return head.starts_with("TDSm") || head.starts_with("TDSh");
 }
 
-Result<std::unique_ptr<TableFile>> open_tdms(std::unique_ptr<PeekSource> source,
-                                             const ReadOptions& options) {
+Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
+                                        const ReadOptions& options) {
   auto bytes = random_bytes_of(std::move(source), options.progress);
   if (!bytes) return bytes.error();
-  auto contents = read_tdms_contents(std::move(bytes).value());
+  auto contents = read_contents(std::move(bytes).value());
   if (!contents) return contents.error();
-  return std::unique_ptr<TableFile>(std::make_unique<TdmsFile>(std::move(contents).value()));
+  return std::unique_ptr<TableFile>(std::make_unique<File>(std::move(contents).value()));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

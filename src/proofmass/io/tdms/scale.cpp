@@ -8,7 +8,7 @@
 
 #include "proofmass/io/text/wording.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 constexpr double most_points = 65'536;
@@ -16,7 +16,7 @@ constexpr double most_points = 65'536;
 /// The properties of one scale; keeps the first missing one.
 class ScaleProperties {
  public:
-  ScaleProperties(const TdmsProperties& properties, std::uint32_t index, std::string_view kind)
+  ScaleProperties(const Properties& properties, std::uint32_t index, std::string_view kind)
       : properties_(properties), prefix_(fmt::format("NI_Scale[{}]_{}_", index, kind)) {}
 
   double operator()(std::string_view name) {
@@ -34,13 +34,13 @@ class ScaleProperties {
       out.push_back((*this)(fmt::format("{}[{}]", name, i)));
     return out;
   }
-  [[nodiscard]] Result<TdmsScale> done(TdmsScale scale) const {
+  [[nodiscard]] Result<Scale> done(Scale scale) const {
     if (missing_.empty()) return scale;
     return Error{Errc::unsupported, missing_ + " is missing"};
   }
 
  private:
-  const TdmsProperties& properties_;
+  const Properties& properties_;
   std::string prefix_;
   std::string missing_;
 };
@@ -53,19 +53,19 @@ bool is_count(double value) {
   return value >= 0.0 && value <= most_points && value == std::floor(value);
 }
 
-Result<TdmsScale> read_polynomial(ScaleProperties& of) {
+Result<Scale> read_polynomial(ScaleProperties& of) {
   const double size = of.maybe("Coefficients_Size").value_or(4.0);
   if (!is_count(size)) return impossible("a polynomial of too many coefficients");
-  TdmsPolynomial polynomial{of.list("Coefficients", size)};
+  Polynomial polynomial{of.list("Coefficients", size)};
   return of.done(std::move(polynomial));
 }
 
 /// The "scaled values" are the input and the "pre-scaled" ones the output, as in NI's own readers.
-Result<TdmsScale> read_lookup(ScaleProperties& of) {
+Result<Scale> read_lookup(ScaleProperties& of) {
   const double size = of("Scaled_Values_Size");
   if (!is_count(size) || size < 1.0 || of("Pre_Scaled_Values_Size") != size)
     return impossible("a table whose columns differ in length, or are none");
-  TdmsLookup table{of.list("Scaled_Values", size), of.list("Pre_Scaled_Values", size)};
+  Lookup table{of.list("Scaled_Values", size), of.list("Pre_Scaled_Values", size)};
   if (table.x.size() > 1 && table.x.front() > table.x.back()) {
     std::ranges::reverse(table.x);
     std::ranges::reverse(table.y);
@@ -84,8 +84,8 @@ double leads_ohm(double lead_ohm, double wires, bool is_divider) {
   return wires == 2 && !is_divider ? 2.0 * lead_ohm : 0.0;
 }
 
-Result<TdmsScale> read_rtd(ScaleProperties& of) {
-  TdmsRtd rtd;
+Result<Scale> read_rtd(ScaleProperties& of) {
+  Rtd rtd;
   rtd.current_amp = of("Current_Excitation");
   rtd.r0_ohm = of("R0_Nominal_Resistance");
   rtd.a = of("A");
@@ -97,9 +97,9 @@ Result<TdmsScale> read_rtd(ScaleProperties& of) {
   return of.done(rtd);
 }
 
-Result<TdmsScale> read_strain(ScaleProperties& of) {
-  using Bridge = TdmsStrain::Bridge;
-  TdmsStrain strain;
+Result<Scale> read_strain(ScaleProperties& of) {
+  using Bridge = Strain::Bridge;
+  Strain strain;
   const double configuration = of("Configuration");
   const bool is_full = configuration >= 10183 && configuration <= 10185;
   if (configuration == 10183)
@@ -128,8 +128,8 @@ Result<TdmsScale> read_strain(ScaleProperties& of) {
   return of.done(strain);
 }
 
-Result<TdmsScale> read_thermistor(ScaleProperties& of) {
-  TdmsThermistor thermistor;
+Result<Scale> read_thermistor(ScaleProperties& of) {
+  Thermistor thermistor;
   const double type = of("Excitation_Type");
   if (type != current_excitation && type != voltage_excitation)
     return impossible(fmt::format("a thermistor of excitation {}", type));
@@ -145,7 +145,7 @@ Result<TdmsScale> read_thermistor(ScaleProperties& of) {
   return of.done(thermistor);
 }
 
-Result<TdmsScale> read_thermocouple(ScaleProperties& of) {
+Result<Scale> read_thermocouple(ScaleProperties& of) {
   struct Code {
     double code;
     char type;
@@ -161,16 +161,16 @@ Result<TdmsScale> read_thermocouple(ScaleProperties& of) {
   const double asked = of.maybe("Thermocouple_Type").value_or(10072);
   const auto found = std::ranges::find(codes, asked, &Code::code);
   if (found == codes.end()) return impossible(fmt::format("a thermocouple of type {}", asked));
-  return of.done(TdmsThermocouple{found->type, of.maybe("Scaling_Direction").value_or(0.0) == 1.0});
+  return of.done(Thermocouple{found->type, of.maybe("Scaling_Direction").value_or(0.0) == 1.0});
 }
 
 }  // namespace
 
-Result<TdmsScale> read_scale(const TdmsProperties& properties, std::uint32_t index) {
+Result<Scale> read_scale(const Properties& properties, std::uint32_t index) {
   const std::string kind = text_of(properties, fmt::format("NI_Scale[{}]_Scale_Type", index));
   ScaleProperties of(properties, index, kind);
   if (kind == "Linear") {
-    const TdmsLinear linear{of("Slope"), of("Y_Intercept")};
+    const Linear linear{of("Slope"), of("Y_Intercept")};
     return of.done(linear);
   }
   if (kind == "Polynomial") return read_polynomial(of);
@@ -179,27 +179,27 @@ Result<TdmsScale> read_scale(const TdmsProperties& properties, std::uint32_t ind
   if (kind == "Strain") return read_strain(of);
   if (kind == "Thermistor") return read_thermistor(of);
   if (kind == "Thermocouple") return read_thermocouple(of);
-  if (kind == "Add") return TdmsScale(TdmsSum{1.0});
-  if (kind == "Subtract") return TdmsScale(TdmsSum{-1.0});
-  if (kind == "AdvancedAPI") return TdmsScale(TdmsSame{});
+  if (kind == "Add") return Scale(Sum{1.0});
+  if (kind == "Subtract") return Scale(Sum{-1.0});
+  if (kind == "AdvancedAPI") return Scale(Same{});
   return impossible(fmt::format("a scale of kind \"{}\"", kind));
 }
 
-std::string words_for(const TdmsScale& scale) {
-  if (const auto* linear = std::get_if<TdmsLinear>(&scale))
+std::string words_for(const Scale& scale) {
+  if (const auto* linear = std::get_if<Linear>(&scale))
     return fmt::format("linear {} x + {}", in_words(linear->slope), in_words(linear->intercept));
-  if (const auto* polynomial = std::get_if<TdmsPolynomial>(&scale))
+  if (const auto* polynomial = std::get_if<Polynomial>(&scale))
     return fmt::format("polynomial of {} coefficients", polynomial->coefficients.size());
-  if (const auto* table = std::get_if<TdmsLookup>(&scale))
+  if (const auto* table = std::get_if<Lookup>(&scale))
     return fmt::format("table of {} points", table->x.size());
-  if (std::holds_alternative<TdmsRtd>(scale)) return "resistance thermometer";
-  if (std::holds_alternative<TdmsStrain>(scale)) return "strain gages";
-  if (std::holds_alternative<TdmsThermistor>(scale)) return "thermistor";
-  if (const auto* couple = std::get_if<TdmsThermocouple>(&scale))
+  if (std::holds_alternative<Rtd>(scale)) return "resistance thermometer";
+  if (std::holds_alternative<Strain>(scale)) return "strain gages";
+  if (std::holds_alternative<Thermistor>(scale)) return "thermistor";
+  if (const auto* couple = std::get_if<Thermocouple>(&scale))
     return fmt::format("thermocouple {}{}", couple->type, couple->to_voltage ? " to voltage" : "");
-  if (const auto* sum = std::get_if<TdmsSum>(&scale))
+  if (const auto* sum = std::get_if<Sum>(&scale))
     return sum->sign_of_left > 0.0 ? "sum" : "difference";
   return "no change";
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

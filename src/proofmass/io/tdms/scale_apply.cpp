@@ -6,17 +6,17 @@
 #include "proofmass/io/tdms/scale.hpp"
 #include "proofmass/io/tdms/thermocouple.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
-double scaled(const TdmsPolynomial& polynomial, double x) {
+double scaled(const Polynomial& polynomial, double x) {
   double y = 0.0;
   for (std::size_t i = polynomial.coefficients.size(); i-- > 0;)
     y = y * x + polynomial.coefficients[i];
   return y;
 }
 
-double scaled(const TdmsLookup& table, double x) {
+double scaled(const Lookup& table, double x) {
   if (std::isnan(x)) return x;
   const auto above = std::ranges::upper_bound(table.x, x);
   if (above == table.x.begin()) return table.y.front();
@@ -27,7 +27,7 @@ double scaled(const TdmsLookup& table, double x) {
 }
 
 /// The quadratic above 0 °C; below, Newton steps on the quartic starting at its root.
-double scaled(const TdmsRtd& rtd, double volts) {
+double scaled(const Rtd& rtd, double volts) {
   const double ratio = (volts / rtd.current_amp - rtd.lead_ohm) / rtd.r0_ohm;
   const double root = std::sqrt(rtd.a * rtd.a - 4.0 * rtd.b * (1.0 - ratio));
   // This form preserves digits for small B.
@@ -45,8 +45,8 @@ double scaled(const TdmsRtd& rtd, double volts) {
   return t > absolute_zero_degc ? t : std::numeric_limits<double>::quiet_NaN();
 }
 
-double scaled(const TdmsStrain& strain, double volts) {
-  using Bridge = TdmsStrain::Bridge;
+double scaled(const Strain& strain, double volts) {
+  using Bridge = Strain::Bridge;
   const double v = (volts - strain.unstrained_volt) / strain.excitation_volt;
   const double nu = strain.poisson;
   const double k = -strain.gain / strain.gage_factor;
@@ -67,7 +67,7 @@ double scaled(const TdmsStrain& strain, double volts) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-double scaled(const TdmsThermistor& thermistor, double volts) {
+double scaled(const Thermistor& thermistor, double volts) {
   const double whole_ohm = thermistor.is_divider
                                ? thermistor.r1_ohm / (thermistor.excitation / volts - 1.0)
                                : volts / thermistor.excitation;
@@ -76,27 +76,24 @@ double scaled(const TdmsThermistor& thermistor, double volts) {
          thermistor.offset_kelvin;
 }
 
-double scaled(const TdmsThermocouple& couple, double x) {
+double scaled(const Thermocouple& couple, double x) {
   return couple.to_voltage ? 1e3 * thermocouple_mv(couple.type, x)
                            : thermocouple_degc(couple.type, 1e-3 * x);
 }
 
 }  // namespace
 
-void apply_scale(const TdmsScale& scale,
-                 View<double> left,
-                 View<double> right,
-                 std::span<double> out) {
+void apply_scale(const Scale& scale, View<double> left, View<double> right, std::span<double> out) {
   PM_EXPECTS(left.size() == out.size() && right.size() == out.size());
   std::visit(
       [&](const auto& of) {
         using Kind = std::decay_t<decltype(of)>;
         for (std::size_t i = 0; i < out.size(); ++i) {
-          if constexpr (std::is_same_v<Kind, TdmsLinear>)
+          if constexpr (std::is_same_v<Kind, Linear>)
             out[i] = of.slope * left[i] + of.intercept;
-          else if constexpr (std::is_same_v<Kind, TdmsSum>)
+          else if constexpr (std::is_same_v<Kind, Sum>)
             out[i] = right[i] + of.sign_of_left * left[i];
-          else if constexpr (std::is_same_v<Kind, TdmsSame>)
+          else if constexpr (std::is_same_v<Kind, Same>)
             out[i] = left[i];
           else
             out[i] = scaled(of, left[i]);
@@ -105,4 +102,4 @@ void apply_scale(const TdmsScale& scale,
       scale);
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -6,7 +6,7 @@
 
 #include "proofmass/core/contract.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 constexpr std::size_t most_steps = 64;
@@ -18,15 +18,15 @@ std::string property(std::uint32_t index, std::string_view what) {
 }  // namespace
 
 /// Follows the chain from its last scale to the stored values.
-class TdmsScaling::Builder {
+class Scaling::Builder {
  public:
-  Builder(const TdmsProperties& properties, std::span<const std::uint32_t> scalers)
+  Builder(const Properties& properties, std::span<const std::uint32_t> scalers)
       : properties_(properties), scalers_(scalers) {}
 
-  Result<std::optional<TdmsScaling>> run(std::uint32_t last) {
+  Result<std::optional<Scaling>> run(std::uint32_t last) {
     const auto outcome = follow(last, 0);
     if (!outcome) return outcome.error();
-    if (outcome->is_source) made_.steps_.push_back({TdmsSame{}, *outcome, *outcome});
+    if (outcome->is_source) made_.steps_.push_back({Same{}, *outcome, *outcome});
     made_.outcomes_.resize(made_.steps_.size());
     return std::optional(std::move(made_));
   }
@@ -60,7 +60,7 @@ class TdmsScaling::Builder {
       return Error{Errc::unsupported, "the scales go round in a circle, or are too many"};
     auto scale = read_scale(properties_, index);
     if (!scale) return scale.error();
-    const bool is_sum = std::holds_alternative<TdmsSum>(*scale);
+    const bool is_sum = std::holds_alternative<Sum>(*scale);
     const auto left =
         follow(input_of(index, kind + (is_sum ? "_Left_Operand_Input_Source" : "_Input_Source")),
                depth + 1);
@@ -82,22 +82,22 @@ class TdmsScaling::Builder {
     return is_index ? static_cast<std::uint32_t>(*input) : stored_values;
   }
 
-  const TdmsProperties& properties_;
+  const Properties& properties_;
   std::span<const std::uint32_t> scalers_;
-  TdmsScaling made_;
+  Scaling made_;
   std::map<std::uint32_t, Input> outcome_of_;
 };
 
-Result<std::optional<TdmsScaling>> TdmsScaling::of(const TdmsProperties& properties,
-                                                   std::span<const std::uint32_t> scalers) {
-  using Found = std::optional<TdmsScaling>;
+Result<std::optional<Scaling>> Scaling::of(const Properties& properties,
+                                           std::span<const std::uint32_t> scalers) {
+  using Found = std::optional<Scaling>;
   const auto count = number_of(properties, "NI_Number_Of_Scales");
   if (!count || !(*count >= 1.0) || *count > 4294967295.0) return Found{};
   if (text_of(properties, "NI_Scaling_Status") == "scaled") return Found{};
   return Builder(properties, scalers).run(static_cast<std::uint32_t>(*count) - 1);
 }
 
-void TdmsScaling::apply(std::span<const std::vector<double>> columns, std::span<double> out) {
+void Scaling::apply(std::span<const std::vector<double>> columns, std::span<double> out) {
   PM_EXPECTS(columns.size() == sources_.size() && !steps_.empty());
   const auto values_of = [&](const Input& input) {
     const auto& values = input.is_source ? columns[input.number] : outcomes_[input.number];
@@ -112,10 +112,10 @@ void TdmsScaling::apply(std::span<const std::vector<double>> columns, std::span<
   }
 }
 
-std::string TdmsScaling::words() const {
+std::string Scaling::words() const {
   std::string words;
   for (const Step& step : steps_) words += (words.empty() ? "" : ", then ") + words_for(step.scale);
   return words;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

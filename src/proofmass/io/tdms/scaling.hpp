@@ -11,11 +11,11 @@
 #include "proofmass/io/tdms/scale.hpp"
 #include "proofmass/io/tdms/value.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 
 /// The chain of scales from a channel's stored values to its measured values: NI_Scale[n]_*; the
 /// last one gives the result.
-class TdmsScaling {
+class Scaling {
  public:
   /// Input of a chain that is not DAQmx raw data.
   static constexpr std::uint32_t stored_values = 0xFFFFFFFF;
@@ -23,8 +23,8 @@ class TdmsScaling {
   /// `scalers` are the channel's, by their numbers; empty if it is not DAQmx raw data. nullopt if
   /// there is no chain, or it has been applied already.
   /// Errors: unsupported (cannot be computed), a short message.
-  [[nodiscard]] static Result<std::optional<TdmsScaling>> of(
-      const TdmsProperties& properties, std::span<const std::uint32_t> scalers);
+  [[nodiscard]] static Result<std::optional<Scaling>> of(const Properties& properties,
+                                                         std::span<const std::uint32_t> scalers);
 
   /// The scalers used as input, in the order in which apply() takes them.
   [[nodiscard]] std::span<const std::uint32_t> sources() const { return sources_; }
@@ -40,7 +40,7 @@ class TdmsScaling {
     std::size_t number = 0;
   };
   struct Step {
-    TdmsScale scale;
+    Scale scale;
     Input left;
     Input right;
   };
@@ -51,4 +51,4 @@ class TdmsScaling {
   std::vector<std::vector<double>> outcomes_;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -5,20 +5,20 @@
 #include "proofmass/io/tdms/tdms_test_support.hpp"
 #include "proofmass/io/tdms/thermocouple.hpp"
 
-namespace proofmass::io::tdms_scaling_test {
+namespace proofmass::io::tdms::scaling_test {
 namespace {
 
 using namespace specimen;
 
 /// Properties of a channel.
-struct Scale {
-  TdmsProperties properties;
+struct ScaleProperties {
+  Properties properties;
 
-  Scale& set(const std::string& name, double value) {
+  ScaleProperties& set(const std::string& name, double value) {
     properties[name] = value;
     return *this;
   }
-  Scale& kind(const std::string& value) {
+  ScaleProperties& kind(const std::string& value) {
     properties["NI_Scale[0]_Scale_Type"] = value;
     return *this;
   }
@@ -31,7 +31,7 @@ struct Scale {
   }
 };
 
-TdmsRead scaled(TdmsList& list, const std::vector<double>& values) {
+Read scaled(TdmsList& list, const std::vector<double>& values) {
   return tdms_or_fail(tdms_segment(tdms_whole, list.bytes(), bytes_of(values)));
 }
 
@@ -41,7 +41,7 @@ TdmsList one_channel(std::uint64_t values) {
   return list;
 }
 
-TEST(TdmsScaling, ALinearScaleIsAppliedAndTold) {
+TEST(Scaling, ALinearScaleIsAppliedAndTold) {
   TdmsList list = one_channel(3);
   list.property("NI_Number_Of_Scales", 1U)
       .property("NI_Scaling_Status", "unscaled")
@@ -55,7 +55,7 @@ TEST(TdmsScaling, ALinearScaleIsAppliedAndTold) {
   EXPECT_TRUE(read.is_noted("a: scaled as the file says: linear 2 x + 10")) << read.all_notes();
 }
 
-TEST(TdmsScaling, WhatIsScaledAlreadyIsLeftAlone) {
+TEST(Scaling, WhatIsScaledAlreadyIsLeftAlone) {
   TdmsList list = one_channel(1);
   list.property("NI_Number_Of_Scales", 1U)
       .property("NI_Scaling_Status", "scaled")
@@ -65,7 +65,7 @@ TEST(TdmsScaling, WhatIsScaledAlreadyIsLeftAlone) {
   EXPECT_EQ(scaled(list, {1}).columns[0], (std::vector<double>{1}));
 }
 
-TEST(TdmsScaling, AGroupOrTheFileMaySayIt) {
+TEST(Scaling, AGroupOrTheFileMaySayIt) {
   for (const bool by_group : {false, true}) {
     TdmsList list;
     list.no_values(by_group ? "/'g'" : "/")
@@ -78,7 +78,7 @@ TEST(TdmsScaling, AGroupOrTheFileMaySayIt) {
   }
 }
 
-TEST(TdmsScaling, ChainsAreFollowedFromTheLastScaleToTheStoredValues) {
+TEST(Scaling, ChainsAreFollowedFromTheLastScaleToTheStoredValues) {
   TdmsList list = one_channel(3);
   list.property("NI_Number_Of_Scales", 3U);
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -92,7 +92,7 @@ TEST(TdmsScaling, ChainsAreFollowedFromTheLastScaleToTheStoredValues) {
   EXPECT_EQ(scaled(list, {1, 2, 3}).columns[0], (std::vector<double>{21, 27, 33}));
 }
 
-TEST(TdmsScaling, WhatCannotBeComputedLeavesTheStoredValuesWithoutUnit) {
+TEST(Scaling, WhatCannotBeComputedLeavesTheStoredValuesWithoutUnit) {
   for (const char* kind : {"Logarithm", "RTD", "Polynomial"}) {
     TdmsList list = one_channel(2);
     list.property("NI_Number_Of_Scales", 1U)
@@ -105,7 +105,7 @@ TEST(TdmsScaling, WhatCannotBeComputedLeavesTheStoredValuesWithoutUnit) {
   }
 }
 
-TEST(TdmsScaling, ACircleOfScalesIsNoChain) {
+TEST(Scaling, ACircleOfScalesIsNoChain) {
   TdmsList list = one_channel(1);
   list.property("NI_Number_Of_Scales", 2U);
   for (std::uint32_t i = 0; i < 2; ++i) {
@@ -117,7 +117,7 @@ TEST(TdmsScaling, ACircleOfScalesIsNoChain) {
   EXPECT_TRUE(scaled(list, {1}).is_noted("circle"));
 }
 
-TEST(TdmsScaling, SumsOfSumsAreComputedOnce) {
+TEST(Scaling, SumsOfSumsAreComputedOnce) {
   // 2^60 additions if each were evaluated separately.
   TdmsList list = one_channel(1);
   list.property("NI_Number_Of_Scales", 60U);
@@ -130,8 +130,8 @@ TEST(TdmsScaling, SumsOfSumsAreComputedOnce) {
   EXPECT_EQ(scaled(list, {1}).columns[0], (std::vector<double>{0x1p60}));
 }
 
-TEST(TdmsScaling, PolynomialsHaveFourCoefficientsIfNothingSaysOtherwise) {
-  Scale scale;
+TEST(Scaling, PolynomialsHaveFourCoefficientsIfNothingSaysOtherwise) {
+  ScaleProperties scale;
   scale.kind("Polynomial");
   for (int i = 0; i < 4; ++i)
     scale.set("NI_Scale[0]_Polynomial_Coefficients[" + std::to_string(i) + "]", i + 1.0);
@@ -142,9 +142,9 @@ TEST(TdmsScaling, PolynomialsHaveFourCoefficientsIfNothingSaysOtherwise) {
   EXPECT_EQ(scale.of(2.0), 0.0);
 }
 
-TEST(TdmsScaling, TablesAreInterpolatedAndEndFlat) {
+TEST(Scaling, TablesAreInterpolatedAndEndFlat) {
   for (const bool descending : {false, true}) {
-    Scale scale;
+    ScaleProperties scale;
     scale.kind("Table");
     scale.set("NI_Scale[0]_Table_Scaled_Values_Size", 3);
     scale.set("NI_Scale[0]_Table_Pre_Scaled_Values_Size", 3);
@@ -163,8 +163,8 @@ TEST(TdmsScaling, TablesAreInterpolatedAndEndFlat) {
   }
 }
 
-Scale platinum(double lead_ohm, double wires) {
-  Scale scale;
+ScaleProperties platinum(double lead_ohm, double wires) {
+  ScaleProperties scale;
   scale.kind("RTD")
       .set("NI_Scale[0]_RTD_Current_Excitation", 1e-3)
       .set("NI_Scale[0]_RTD_R0_Nominal_Resistance", 100.0)
@@ -176,9 +176,9 @@ Scale platinum(double lead_ohm, double wires) {
   return scale;
 }
 
-TEST(TdmsScaling, PlatinumThermometersAreThoseOfIec60751) {
+TEST(Scaling, PlatinumThermometersAreThoseOfIec60751) {
   // Resistances in the standard's table 1 are rounded to 0.01 ohm, 0.026 K.
-  const Scale scale = platinum(0.0, 2);
+  const ScaleProperties scale = platinum(0.0, 2);
   EXPECT_NEAR(scale.of(18.52e-3), -200.0, 0.02);
   EXPECT_NEAR(scale.of(60.26e-3), -100.0, 0.02);
   EXPECT_NEAR(scale.of(100.00e-3), 0.0, 1e-9);
@@ -186,8 +186,8 @@ TEST(TdmsScaling, PlatinumThermometersAreThoseOfIec60751) {
   EXPECT_NEAR(scale.of(313.71e-3), 600.0, 0.02);
 }
 
-TEST(TdmsScaling, PlatinumThermometersInvertTheirOwnEquation) {
-  const Scale scale = platinum(0.0, 2);
+TEST(Scaling, PlatinumThermometersInvertTheirOwnEquation) {
+  const ScaleProperties scale = platinum(0.0, 2);
   for (double t = -200.0; t <= 850.0; t += 12.5) {
     const double below = t < 0.0 ? -4.183e-12 * (t - 100.0) * t * t * t : 0.0;
     const double ohm = 100.0 * (1.0 + 3.9083e-3 * t - 5.775e-7 * t * t + below);
@@ -195,7 +195,7 @@ TEST(TdmsScaling, PlatinumThermometersInvertTheirOwnEquation) {
   }
 }
 
-TEST(TdmsScaling, LeadsCountAsOftenAsTheyAreMeasuredAlong) {
+TEST(Scaling, LeadsCountAsOftenAsTheyAreMeasuredAlong) {
   const double bare = platinum(0.0, 2).of(0.12);
   EXPECT_NEAR(platinum(5.0, 2).of(0.13), bare, 1e-9);
   EXPECT_NEAR(platinum(5.0, 3).of(0.125), bare, 1e-9);
@@ -208,7 +208,7 @@ double bridge(double r1, double r2, double r3, double r4) {
   return r3 / (r3 + r4) - r2 / (r1 + r2);
 }
 
-TEST(TdmsScaling, StrainIsWhatTheBridgesResistorsSay) {
+TEST(Scaling, StrainIsWhatTheBridgesResistorsSay) {
   constexpr double factor = 2.1;
   constexpr double nu = 0.3;
   constexpr double excitation_volt = 2.5;
@@ -228,7 +228,7 @@ TEST(TdmsScaling, StrainIsWhatTheBridgesResistorsSay) {
         {10272, bridge(1, 1, 1, up)},
     };
     for (const auto& [configuration, ratio] : cases) {
-      Scale scale;
+      ScaleProperties scale;
       scale.kind("Strain")
           .set("NI_Scale[0]_Strain_Configuration", configuration)
           .set("NI_Scale[0]_Strain_Poisson_Ratio", nu)
@@ -242,9 +242,9 @@ TEST(TdmsScaling, StrainIsWhatTheBridgesResistorsSay) {
   }
 }
 
-TEST(TdmsScaling, ThermistorsFollowSteinhartAndHart) {
+TEST(Scaling, ThermistorsFollowSteinhartAndHart) {
   for (const bool is_divider : {false, true}) {
-    Scale scale;
+    ScaleProperties scale;
     scale.kind("Thermistor")
         .set("NI_Scale[0]_Thermistor_Resistance_Configuration", 4)
         .set("NI_Scale[0]_Thermistor_Excitation_Type", is_divider ? 10322 : 10134)
@@ -263,7 +263,7 @@ TEST(TdmsScaling, ThermistorsFollowSteinhartAndHart) {
   }
 }
 
-TEST(TdmsScaling, ThermocouplesHaveTheVoltagesOfTheTablesOfIts90) {
+TEST(Scaling, ThermocouplesHaveTheVoltagesOfTheTablesOfIts90) {
   struct Row {
     char type;
     double degC;
@@ -279,7 +279,7 @@ TEST(TdmsScaling, ThermocouplesHaveTheVoltagesOfTheTablesOfIts90) {
     EXPECT_NEAR(thermocouple_mv(type, degC), mV, 6e-4) << type << degC;
 }
 
-TEST(TdmsScaling, ThermocouplesInvertToASixteenthOfADegree) {
+TEST(Scaling, ThermocouplesInvertToASixteenthOfADegree) {
   struct Range {
     char type;
     double from_degC, to_degC;
@@ -294,7 +294,7 @@ TEST(TdmsScaling, ThermocouplesInvertToASixteenthOfADegree) {
   EXPECT_TRUE(std::isnan(thermocouple_mv('T', 401.0)));
 }
 
-TEST(TdmsScaling, AThermocouplesChainAddsTheColdJunction) {
+TEST(Scaling, AThermocouplesChainAddsTheColdJunction) {
   // Microvolts and the junction's temperature, as stored by a task of NI-DAQmx.
   TdmsList list;
   list.daqmx("/'g'/'T'", 2, {list.scaler(9, 0, 0, 0), list.scaler(9, 0, 8, 1)}, {16});
@@ -318,4 +318,4 @@ TEST(TdmsScaling, AThermocouplesChainAddsTheColdJunction) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::tdms_scaling_test
+}  // namespace proofmass::io::tdms::scaling_test

@@ -82,14 +82,14 @@ class TdmsList {
   TdmsList& property(std::string_view name, std::string_view value) {
     return add(name, number(0x20U) + text(value));
   }
-  TdmsList& property(std::string_view name, const TdmsInstant& value) {
+  TdmsList& property(std::string_view name, const tdms::Instant& value) {
     return add(name, number(0x44U) + instant(value));
   }
   /// Raw bytes with a type given by the caller.
   TdmsList& property(std::string_view name, std::uint32_t type, const std::string& value) {
     return add(name, number(type) + value);
   }
-  [[nodiscard]] std::string instant(const TdmsInstant& value) const {
+  [[nodiscard]] std::string instant(const tdms::Instant& value) const {
     return order_ == Order::big ? number(value.seconds) + number(value.fraction)
                                 : number(value.fraction) + number(value.seconds);
   }

@@ -4,7 +4,7 @@
 
 #include "proofmass/io/tdms/tdms_test_support.hpp"
 
-namespace proofmass::io::tdms_test {
+namespace proofmass::io::tdms::tdms_test {
 namespace {
 
 using namespace specimen;
@@ -145,7 +145,7 @@ TEST(Tdms, WaveformPropertiesGiveRateStartAndUnit) {
   const std::int64_t start_ns = 1'705'479'286'123'456'789;
   list.channel("/'g'/'a'", f64, 2)
       .property("wf_increment", 0.005)
-      .property("wf_start_time", tdms_instant(start_ns))
+      .property("wf_start_time", instant_at(start_ns))
       .property("wf_start_offset", 0.25)
       .property("unit_string", "m/s^2");
   const auto read = tdms_or_fail(tdms_segment(tdms_whole, list.bytes(), doubles_of({1, 2})));
@@ -158,7 +158,7 @@ TEST(Tdms, AStartIn1904IsNone) {
   TdmsList list;
   list.channel("/'g'/'a'", f64, 1)
       .property("wf_increment", 0.001)
-      .property("wf_start_time", TdmsInstant{});
+      .property("wf_start_time", Instant{});
   const auto read = tdms_or_fail(tdms_segment(tdms_whole, list.bytes(), doubles_of({1})));
   EXPECT_EQ(read.head.rate_hz, 1000.0);
   EXPECT_FALSE(read.head.start_ns);
@@ -188,7 +188,7 @@ TEST(Tdms, PointsInTimeAreExactToTheNanosecond) {
     list.channel("/'g'/'t'", 0x44, 3).channel("/'g'/'a'", f64, 3);
     std::string data;
     for (const std::int64_t since : {0, 999'999'999, 2'000'000'003})
-      data += list.instant(tdms_instant(first + since));
+      data += list.instant(instant_at(first + since));
     data += doubles_of({1, 2, 3}, order);
     const std::uint32_t contents = tdms_whole | (order == Order::big ? tdms_big_endian : 0U);
     const auto read = tdms_or_fail(tdms_segment(contents, list.bytes(), data));
@@ -203,7 +203,7 @@ TEST(Tdms, InstantsComeBackToTheNanosecond) {
   for (const std::int64_t ns :
        {std::int64_t{0}, std::int64_t{1}, std::int64_t{-1}, std::int64_t{999'999'999},
         std::int64_t{-2'082'844'799'999'999'999}, std::int64_t{9'223'372'036'854'775'807}}) {
-    EXPECT_EQ(tdms_instant(ns).unix_ns(), ns);
+    EXPECT_EQ(instant_at(ns).unix_ns(), ns);
   }
 }
 
@@ -326,7 +326,7 @@ TEST(Tdms, ChannelsOfOneGroupAndRateAreATable) {
       tdms_contents(tdms_segment(tdms_whole, list.bytes(), doubles_of({1, 2, 3, 4, 5, 6, 7, 8})));
   ASSERT_TRUE(contents.has_value());
   std::vector<std::string> names;
-  for (const TdmsGroup& group : (*contents)->groups) names.push_back(group.name);
+  for (const Group& group : (*contents)->groups) names.push_back(group.name);
   EXPECT_EQ(names, (std::vector<std::string>{"g 10 Hz", "g 5 Hz", "h"}));
   EXPECT_EQ((*contents)->groups[0].headings, (std::vector<std::string>{"a", "c"}));
 }
@@ -340,4 +340,4 @@ TEST(Tdms, SaysWhatTheFileSaysOfItself) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::tdms_test
+}  // namespace proofmass::io::tdms::tdms_test

@@ -11,9 +11,7 @@
 #include "proofmass/io/tdms/group_reader.hpp"
 #include "proofmass/io/tdms/specimens.hpp"
 
-namespace proofmass::io {
-
-namespace specimen {
+namespace proofmass::io::specimen {
 
 using Columns = std::vector<std::vector<double>>;
 
@@ -31,10 +29,12 @@ inline TdmsList two_channels(Order order = Order::little) {
   return list;
 }
 
-}  // namespace specimen
+}  // namespace proofmass::io::specimen
+
+namespace proofmass::io::tdms {
 
 /// Contents of a table for the tests.
-struct TdmsRead {
+struct Read {
   TableHead head;
   std::vector<std::vector<double>> columns;
   std::vector<Note> notes;
@@ -56,22 +56,22 @@ struct TdmsRead {
   }
 };
 
-inline Result<std::shared_ptr<const TdmsContents>> tdms_contents(const std::string& bytes) {
+inline Result<std::shared_ptr<const Contents>> tdms_contents(const std::string& bytes) {
   auto source = std::make_unique<PeekSource>(open_memory(std::as_bytes(std::span(bytes))));
   auto random = random_bytes_of(std::move(source), {});
   if (!random) return random.error();
-  return read_tdms_contents(std::move(random).value());
+  return read_contents(std::move(random).value());
 }
 
 /// Reads a table `rows_at_once` rows at a time.
-inline Result<TdmsRead> read_tdms(const std::string& bytes,
-                                  std::size_t group = 0,
-                                  std::size_t rows_at_once = 7) {
+inline Result<Read> read_tdms(const std::string& bytes,
+                              std::size_t group = 0,
+                              std::size_t rows_at_once = 7) {
   auto contents = tdms_contents(bytes);
   if (!contents) return contents.error();
-  auto table = open_tdms_table(*contents, group);
+  auto table = open_table(*contents, group);
   if (!table) return table.error();
-  TdmsRead out;
+  Read out;
   out.head = (*table)->head();
   out.columns.resize(out.head.columns);
   std::vector<std::vector<double>> block(out.head.columns, std::vector<double>(rows_at_once));
@@ -89,12 +89,12 @@ inline Result<TdmsRead> read_tdms(const std::string& bytes,
 }
 
 /// The same; must succeed.
-inline TdmsRead tdms_or_fail(const std::string& bytes,
-                             std::size_t group = 0,
-                             std::size_t rows_at_once = 7) {
+inline Read tdms_or_fail(const std::string& bytes,
+                         std::size_t group = 0,
+                         std::size_t rows_at_once = 7) {
   auto read = read_tdms(bytes, group, rows_at_once);
   EXPECT_TRUE(read.has_value()) << (read ? "" : read.error().message);
-  return read ? std::move(read).value() : TdmsRead{};
+  return read ? std::move(read).value() : Read{};
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 /// A polynomial valid from `from` to the next one's, c[0] first.
@@ -23,14 +23,14 @@ struct Function {
   double to = 0.0;
 };
 
-struct Thermocouple {
+struct ThermocoupleType {
   char type = 0;
   Function mV;    ///< as a function of degrees Celsius
   Function degC;  ///< as a function of millivolts
 };
 
 // Source: NIST Monograph 175, tables of coefficients; ITS-90 Thermocouple Database.
-constexpr std::array<Thermocouple, 8> thermocouples{{
+constexpr std::array<ThermocoupleType, 8> thermocouples{{
     {'B',
      {{{{0.0,
          {0.0, -0.246508183460e-03, 0.590404211710e-05, -0.132579316360e-08, 0.156682919010e-11,
@@ -215,15 +215,15 @@ double value_of(const Function& function, double x) {
   return y;
 }
 
-const Thermocouple* find(char type) {
-  const auto found = std::ranges::find(thermocouples, type, &Thermocouple::type);
+const ThermocoupleType* find(char type) {
+  const auto found = std::ranges::find(thermocouples, type, &ThermocoupleType::type);
   return found == thermocouples.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
 double thermocouple_mv(char type, double temp_degc) {
-  const Thermocouple* couple = find(type);
+  const ThermocoupleType* couple = find(type);
   if (couple == nullptr) return std::numeric_limits<double>::quiet_NaN();
   const double mV = value_of(couple->mV, temp_degc);
   // Only type K has a term that is not a polynomial, above 0 °C.
@@ -233,9 +233,9 @@ double thermocouple_mv(char type, double temp_degc) {
 }
 
 double thermocouple_degc(char type, double voltage_mv) {
-  const Thermocouple* couple = find(type);
+  const ThermocoupleType* couple = find(type);
   return couple == nullptr ? std::numeric_limits<double>::quiet_NaN()
                            : value_of(couple->degC, voltage_mv);
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

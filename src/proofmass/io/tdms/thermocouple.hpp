@@ -1,6 +1,6 @@
 #pragma once
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 
 /// Voltage in millivolts of a thermocouple of type B, E, J, K, N, R, S or T at a temperature in
 /// degrees Celsius, reference junction at 0 °C; NaN outside the range of the type.
@@ -13,4 +13,4 @@ namespace proofmass::io {
 /// NaN outside their range: B from 250 °C, E, J, K, N and T from −200 °C (J −210 °C).
 [[nodiscard]] double thermocouple_degc(char type, double voltage_mv);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -3,7 +3,7 @@
 #include <array>
 #include <fmt/format.h>
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 constexpr std::uint32_t complex_single = 0x08000C;
@@ -11,35 +11,34 @@ constexpr std::uint32_t complex_double = 0x10000D;
 
 }  // namespace
 
-std::size_t bytes_of(TdmsKind kind) {
+std::size_t bytes_per_value(Kind kind) {
   constexpr std::array<std::size_t, 14> sizes{1, 2, 4, 8, 1, 2, 4, 8, 4, 8, 1, 16, 0, 0};
   return sizes[static_cast<std::size_t>(kind)];
 }
 
-TdmsKind tdms_kind(std::uint32_t type) {
-  if (type >= 1 && type <= 10) return static_cast<TdmsKind>(type - 1);
+Kind kind_of(std::uint32_t type) {
+  if (type >= 1 && type <= 10) return static_cast<Kind>(type - 1);
   switch (type) {
     case 0x19:
-      return TdmsKind::f32;
+      return Kind::f32;
     case 0x1A:
-      return TdmsKind::f64;
+      return Kind::f64;
     case 0x20:
-      return TdmsKind::text;
+      return Kind::text;
     case 0x21:
-      return TdmsKind::boolean;
+      return Kind::boolean;
     case 0x44:
-      return TdmsKind::instant;
+      return Kind::instant;
     default:
-      return TdmsKind::other;
+      return Kind::other;
   }
 }
 
-std::optional<TdmsKind> daqmx_kind(std::uint32_t type) {
-  constexpr std::array kinds{TdmsKind::u8,  TdmsKind::i8,  TdmsKind::u16, TdmsKind::i16,
-                             TdmsKind::u32, TdmsKind::i32, TdmsKind::u64, TdmsKind::i64,
-                             TdmsKind::f32, TdmsKind::f64};
+std::optional<Kind> daqmx_kind(std::uint32_t type) {
+  constexpr std::array kinds{Kind::u8,  Kind::i8,  Kind::u16, Kind::i16, Kind::u32,
+                             Kind::i32, Kind::u64, Kind::i64, Kind::f32, Kind::f64};
   if (type < kinds.size()) return kinds[type];
-  return type == 0xFFFFFFFF ? std::optional(TdmsKind::instant) : std::nullopt;
+  return type == 0xFFFFFFFF ? std::optional(Kind::instant) : std::nullopt;
 }
 
 std::string words_for_type(std::uint32_t type) {
@@ -62,4 +61,4 @@ std::size_t bytes_of_other(std::uint32_t type) {
   return type == complex_double ? 16 : 0;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 
 /// Storage of a value of a TDMS channel.
-enum class TdmsKind : unsigned char {
+enum class Kind : unsigned char {
   i8,
   i16,
   i32,
@@ -20,21 +20,21 @@ enum class TdmsKind : unsigned char {
   f32,
   f64,
   boolean,
-  instant,  ///< TdmsInstant
+  instant,  ///< Instant
   text,     ///< variable length
   other,    ///< unsupported: complex, extended, fixed point
 };
 
 /// 0 for text and other.
-[[nodiscard]] std::size_t bytes_of(TdmsKind kind);
+[[nodiscard]] std::size_t bytes_per_value(Kind kind);
 /// Kind for the type code of a channel or a property.
-[[nodiscard]] TdmsKind tdms_kind(std::uint32_t type);
+[[nodiscard]] Kind kind_of(std::uint32_t type);
 /// Kind for the type code of a DAQmx scaler; nullopt: unknown.
-[[nodiscard]] std::optional<TdmsKind> daqmx_kind(std::uint32_t type);
+[[nodiscard]] std::optional<Kind> daqmx_kind(std::uint32_t type);
 /// "complex numbers", "extended-precision numbers", … for a type of kind `other`.
 [[nodiscard]] std::string words_for_type(std::uint32_t type);
 
 /// Size of a value of a type of kind `other`; 0: unknown.
 [[nodiscard]] std::size_t bytes_of_other(std::uint32_t type);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -9,10 +9,10 @@
 
 #include "proofmass/io/stamp_reader.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 
 /// A timestamp as stored by LabVIEW.
-struct TdmsInstant {
+struct Instant {
   std::int64_t seconds = 0;    ///< since 1904-01-01 00:00 UTC
   std::uint64_t fraction = 0;  ///< fraction of a second, in 2^-64 s
 
@@ -25,19 +25,18 @@ struct TdmsInstant {
 };
 
 /// The reverse, exact: unix_ns() returns the same value.
-[[nodiscard]] TdmsInstant tdms_instant(std::int64_t unix_ns);
+[[nodiscard]] Instant instant_at(std::int64_t unix_ns);
 
 /// The value of a property; numbers of any type are the nearest double.
-using TdmsValue = std::variant<double, std::string, TdmsInstant>;
+using Value = std::variant<double, std::string, Instant>;
 
 /// Properties of a file, a group or a channel; later segments override earlier ones.
-using TdmsProperties = std::map<std::string, TdmsValue, std::less<>>;
+using Properties = std::map<std::string, Value, std::less<>>;
 
-[[nodiscard]] std::optional<double> number_of(const TdmsProperties& properties,
-                                              std::string_view name);
+[[nodiscard]] std::optional<double> number_of(const Properties& properties, std::string_view name);
 /// Empty if there is none.
-[[nodiscard]] std::string text_of(const TdmsProperties& properties, std::string_view name);
-[[nodiscard]] std::optional<TdmsInstant> instant_of(const TdmsProperties& properties,
-                                                    std::string_view name);
+[[nodiscard]] std::string text_of(const Properties& properties, std::string_view name);
+[[nodiscard]] std::optional<Instant> instant_of(const Properties& properties,
+                                                std::string_view name);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -11,7 +11,7 @@
 #include "proofmass/io/tdms/value.hpp"
 #include "proofmass/io/tdms/writing.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 namespace {
 
 constexpr std::uint32_t has_metadata = 1U << 1;
@@ -34,28 +34,28 @@ std::string path_of(std::string_view channel) {
 }
 
 /// Name and properties of a channel.
-struct Column {
+struct WrittenColumn {
   std::string name;
-  TdmsPropertyList properties;
+  PropertyList properties;
 };
 
-TdmsPropertyList file_properties(const WriteOptions& options) {
-  TdmsPropertyList list;
+PropertyList file_properties(const WriteOptions& options) {
+  PropertyList list;
   list.text("name", group);
   for (const auto& [name, value] : options.metadata) list.text(name, value);
   if (!options.sensor_file.empty()) list.text("sensor_file", options.sensor_file);
   return list;
 }
 
-TdmsInstant start_of(const TimeBase& time) {
-  return time.start_ns ? tdms_instant(*time.start_ns) : TdmsInstant{};
+Instant start_of(const TimeBase& time) {
+  return time.start_ns ? instant_at(*time.start_ns) : Instant{};
 }
 
 /// A name that no other column has; two objects with one name would be the same to a reader.
-std::string free_name(std::string name, const std::vector<Column>& taken) {
+std::string free_name(std::string name, const std::vector<WrittenColumn>& taken) {
   if (name.empty()) name = "channel";
   const std::string stem = name;
-  for (int n = 2; std::ranges::find(taken, name, &Column::name) != taken.end(); ++n)
+  for (int n = 2; std::ranges::find(taken, name, &WrittenColumn::name) != taken.end(); ++n)
     name = stem + " " + std::to_string(n);
   return name;
 }
@@ -67,17 +67,17 @@ std::string time_name(const Recording& recording) {
   return "time of the samples";
 }
 
-std::vector<Column> columns_of(const WriterHead& head, std::int32_t rows_a_segment) {
+std::vector<WrittenColumn> columns_of(const WriterHead& head, std::int32_t rows_a_segment) {
   const TimeBase& time = head.recording.time;
-  std::vector<Column> columns;
+  std::vector<WrittenColumn> columns;
   if (head.has_stamps) {
-    Column column{time_name(head.recording), {}};
+    WrittenColumn column{time_name(head.recording), {}};
     column.properties.text("unit_string", "s");
     if (time.start_ns) column.properties.instant("wf_start_time", start_of(time));
     columns.push_back(std::move(column));
   }
   for (const Channel& channel : head.recording.channels) {
-    Column column{free_name(channel.name, columns), {}};
+    WrittenColumn column{free_name(channel.name, columns), {}};
     if (!channel.unit.symbol.empty()) column.properties.text("unit_string", channel.unit.symbol);
     if (!head.has_stamps && time.rate_hz > 0.0) {
       column.properties.instant("wf_start_time", start_of(time));
@@ -92,8 +92,8 @@ std::vector<Column> columns_of(const WriterHead& head, std::int32_t rows_a_segme
 }
 
 /// Sample numbers are integers within the range of a double.
-TdmsPropertyList label_properties(const Recording& recording) {
-  TdmsPropertyList list;
+PropertyList label_properties(const Recording& recording) {
+  PropertyList list;
   list.text("label_channel", recording.label_channel);
   for (std::size_t i = 0; i < recording.labels.size(); ++i) {
     const std::string prefix = "label[" + std::to_string(i) + "]_";
@@ -115,9 +115,9 @@ std::string front_of_segment(std::uint32_t contents,
   return out + metadata;
 }
 
-class TdmsWriter final : public RecordingWriter {
+class Writer final : public RecordingWriter {
  public:
-  TdmsWriter(std::unique_ptr<OutputFile> file, const WriterHead& head, const WriteOptions& options)
+  Writer(std::unique_ptr<OutputFile> file, const WriterHead& head, const WriteOptions& options)
       : file_(std::move(file)),
         has_stamps_(head.has_stamps),
         width_(head.recording.channels.size() + (head.has_stamps ? 1 : 0)),
@@ -196,21 +196,21 @@ class TdmsWriter final : public RecordingWriter {
     append_value(out, static_cast<std::uint32_t>(columns_.size() + 2));
     append_text(out, "/");
     append_value(out, no_values);
-    (is_first_ ? about_file_ : TdmsPropertyList{}).append_to(out);
+    (is_first_ ? about_file_ : PropertyList{}).append_to(out);
     append_text(out, path_of({}));
     append_value(out, no_values);
-    TdmsPropertyList{}.append_to(out);
-    for (const Column& column : columns_) {
+    PropertyList{}.append_to(out);
+    for (const WrittenColumn& column : columns_) {
       append_text(out, path_of(column.name));
       constexpr std::uint32_t index_bytes = 20;
       constexpr std::uint32_t dimensions = 1;
       append_value(out, rows > 0 ? index_bytes : no_values);
       if (rows > 0) {
-        append_value(out, tdms_double);
+        append_value(out, double_type);
         append_value(out, dimensions);
         append_value(out, static_cast<std::uint64_t>(rows));
       }
-      (is_first_ ? column.properties : TdmsPropertyList{}).append_to(out);
+      (is_first_ ? column.properties : PropertyList{}).append_to(out);
     }
     return out;
   }
@@ -219,8 +219,8 @@ class TdmsWriter final : public RecordingWriter {
   bool has_stamps_;
   std::size_t width_;
   std::size_t rows_a_segment_;
-  TdmsPropertyList about_file_;
-  std::vector<Column> columns_;
+  PropertyList about_file_;
+  std::vector<WrittenColumn> columns_;
   std::vector<double> values_;  ///< rows of the segment, each with all its columns
   std::size_t rows_ = 0;
   std::size_t declared_rows_ = 0;
@@ -229,11 +229,10 @@ class TdmsWriter final : public RecordingWriter {
 
 }  // namespace
 
-Result<std::unique_ptr<RecordingWriter>> tdms_writer(std::unique_ptr<OutputFile> file,
-                                                     const WriterHead& head,
-                                                     const WriteOptions& options) {
-  return std::unique_ptr<RecordingWriter>(
-      std::make_unique<TdmsWriter>(std::move(file), head, options));
+Result<std::unique_ptr<RecordingWriter>> create(std::unique_ptr<OutputFile> file,
+                                                const WriterHead& head,
+                                                const WriteOptions& options) {
+  return std::unique_ptr<RecordingWriter>(std::make_unique<Writer>(std::move(file), head, options));
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

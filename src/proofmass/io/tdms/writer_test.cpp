@@ -12,10 +12,10 @@
 #include "proofmass/io/write_recording.hpp"
 #include "proofmass/io/written_test_support.hpp"
 
-namespace proofmass::io::tdms_writer_test {
+namespace proofmass::io::tdms::writer_test {
 namespace {
 
-class TdmsWriting : public testing::Test {
+class Writing : public testing::Test {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::temp_directory_path() /
@@ -50,7 +50,7 @@ Recording troubled(std::size_t rows) {
   return recording;
 }
 
-TEST_F(TdmsWriting, EveryBitComesBack) {
+TEST_F(Writing, EveryBitComesBack) {
   for (const std::size_t rows : {9U, 32768U, 70'000U}) {
     const Recording recording = troubled(rows);
     const Recording back = through(recording);
@@ -60,7 +60,7 @@ TEST_F(TdmsWriting, EveryBitComesBack) {
   }
 }
 
-TEST_F(TdmsWriting, AnEvenBaseStaysEven) {
+TEST_F(Writing, AnEvenBaseStaysEven) {
   for (const double rate_hz : {200.0, 120.005, 1000.0, 204.8, 100.0 / 3.0, 7.0}) {
     Recording recording;
     recording.time = {TimeSource::given_rate, "", rate_hz, {}, -5};
@@ -74,7 +74,7 @@ TEST_F(TdmsWriting, AnEvenBaseStaysEven) {
   }
 }
 
-TEST_F(TdmsWriting, NoTimeBaseIsNone) {
+TEST_F(Writing, NoTimeBaseIsNone) {
   Recording recording;
   recording.channels.push_back({"a", *parse_unit("g"), {1.5, 2.5, 1.0}});
   const Recording back = through(recording);
@@ -82,7 +82,7 @@ TEST_F(TdmsWriting, NoTimeBaseIsNone) {
   EXPECT_EQ(back.channels[0].values, recording.channels[0].values);
 }
 
-TEST_F(TdmsWriting, ChannelsKeepTheirNamesWhateverTheyAre) {
+TEST_F(Writing, ChannelsKeepTheirNamesWhateverTheyAre) {
   Recording recording = troubled(20);
   recording.channels[0].name = "time";
   recording.channels[1].name = "a/b'c";
@@ -93,17 +93,17 @@ TEST_F(TdmsWriting, ChannelsKeepTheirNamesWhateverTheyAre) {
   EXPECT_EQ(back.channels[1].name, "a/b'c");
 }
 
-TEST_F(TdmsWriting, MetadataAndSensorFileStandInTheFile) {
+TEST_F(Writing, MetadataAndSensorFileStandInTheFile) {
   const WriteOptions options{{{"command", "proofmass convert x"}}, "[sensor]\nname = \"A\"\n"};
   ASSERT_TRUE(write_recording(troubled(10), path(), options).has_value());
   const auto contents = tdms_contents(bytes());
   ASSERT_TRUE(contents.has_value());
-  const TdmsProperties& said = (*contents)->map.properties_of("");
+  const Properties& said = (*contents)->map.properties_of("");
   EXPECT_EQ(text_of(said, "command"), "proofmass convert x");
   EXPECT_EQ(text_of(said, "sensor_file"), options.sensor_file);
 }
 
-TEST_F(TdmsWriting, LabelsComeBack) {
+TEST_F(Writing, LabelsComeBack) {
   Recording recording = troubled(3000);
   recording.labels = {{"#1", 5, 7}, {"x, \"up\"\n", 8, 8}, {"x", 700, 2999}};
   recording.label_channel = "part; of";
@@ -113,7 +113,7 @@ TEST_F(TdmsWriting, LabelsComeBack) {
   EXPECT_EQ(back.label_channel, recording.label_channel);
 }
 
-TEST_F(TdmsWriting, ACutFileLosesItsLastPieceOnlyAndAllChannelsEndTogether) {
+TEST_F(Writing, ACutFileLosesItsLastPieceOnlyAndAllChannelsEndTogether) {
   const Recording recording = troubled(70'000);
   ASSERT_TRUE(write_recording(recording, path()).has_value());
   const std::string whole = bytes();
@@ -131,7 +131,7 @@ TEST_F(TdmsWriting, ACutFileLosesItsLastPieceOnlyAndAllChannelsEndTogether) {
   }
 }
 
-TEST_F(TdmsWriting, SegmentsAfterTheFirstHaveNoMetadata) {
+TEST_F(Writing, SegmentsAfterTheFirstHaveNoMetadata) {
   ASSERT_TRUE(write_recording(troubled(32768 * 3), path()).has_value());
   const std::string file = bytes();
   const auto contents = tdms_contents(file);
@@ -142,4 +142,4 @@ TEST_F(TdmsWriting, SegmentsAfterTheFirstHaveNoMetadata) {
 }
 
 }  // namespace
-}  // namespace proofmass::io::tdms_writer_test
+}  // namespace proofmass::io::tdms::writer_test

@@ -7,9 +7,9 @@
 #include "proofmass/io/bytes/little_endian.hpp"
 #include "proofmass/io/tdms/value.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::tdms {
 
-inline constexpr std::uint32_t tdms_double = 10;
+inline constexpr std::uint32_t double_type = 10;
 
 /// A length followed by as many bytes.
 inline void append_text(std::string& out, std::string_view text) {
@@ -18,7 +18,7 @@ inline void append_text(std::string& out, std::string_view text) {
 }
 
 /// Properties of an object, counted as they are added.
-class TdmsPropertyList {
+class PropertyList {
  public:
   void text(std::string_view name, std::string_view value) {
     constexpr std::uint32_t type = 0x20;
@@ -26,7 +26,7 @@ class TdmsPropertyList {
     append_text(bytes_, value);
   }
   void figure(std::string_view name, double value) {
-    begin(name, tdms_double);
+    begin(name, double_type);
     append_value(bytes_, value);
   }
   void whole(std::string_view name, std::int32_t value) {
@@ -34,7 +34,7 @@ class TdmsPropertyList {
     begin(name, type);
     append_value(bytes_, value);
   }
-  void instant(std::string_view name, const TdmsInstant& value) {
+  void instant(std::string_view name, const Instant& value) {
     constexpr std::uint32_t type = 0x44;
     begin(name, type);
     append_value(bytes_, value.fraction);
@@ -57,4 +57,4 @@ class TdmsPropertyList {
   std::string bytes_;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::tdms

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
-namespace proofmass::io {
+namespace proofmass::io::wav {
 namespace {
 
 constexpr std::uint32_t unknown_size = 0xFFFF'FFFF;
@@ -44,7 +44,7 @@ class ChunkReader {
  public:
   explicit ChunkReader(const RandomBytes& file) : file_(file) {}
 
-  Result<WavHeader> run() {
+  Result<Header> run() {
     const auto front = text_at(0, 12);
     if (!front) return front.error();
     if (front->size() < 12) return breaks_off("the header");
@@ -227,7 +227,7 @@ class ChunkReader {
   }
 
   const RandomBytes& file_;
-  WavHeader header_;
+  Header header_;
   std::uint64_t position_ = 0;
   bool big_endian_ = false;
   bool is_long_ = false;
@@ -238,8 +238,8 @@ class ChunkReader {
 
 }  // namespace
 
-Result<WavHeader> read_wav_header(const RandomBytes& file) {
+Result<Header> read_header(const RandomBytes& file) {
   return ChunkReader(file).run();
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::wav

@@ -12,10 +12,10 @@
 #include "proofmass/io/arrays/figure_type.hpp"
 #include "proofmass/io/bytes/random_bytes.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::wav {
 
 /// Information of a WAV file before and after its samples.
-struct WavHeader {
+struct Header {
   std::size_t channels = 0;
   std::uint32_t rate_hz = 0;
   FigureType figure;                           ///< type of each sample; 'u' for a byte, 'i', or 'f'
@@ -31,6 +31,6 @@ struct WavHeader {
 };
 
 /// Errors: corrupt (naming the byte), unsupported (compressed audio), unreadable.
-[[nodiscard]] Result<WavHeader> read_wav_header(const RandomBytes& file);
+[[nodiscard]] Result<Header> read_header(const RandomBytes& file);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::wav

@@ -12,7 +12,7 @@
 #include "proofmass/io/shown_text.hpp"
 #include "proofmass/io/text/wording.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::wav {
 namespace {
 
 using Fields = std::map<std::string, std::string>;
@@ -43,7 +43,7 @@ std::optional<std::int64_t> instant_of(std::string_view text) {
 }
 
 /// The full scale in g given in the comment for an acceleration in integers.
-std::optional<double> scale_of(const WavHeader& header,
+std::optional<double> scale_of(const Header& header,
                                const Fields& fields,
                                const std::string& name,
                                const std::string& number) {
@@ -55,11 +55,11 @@ std::optional<double> scale_of(const WavHeader& header,
 }
 
 /// True if a channel marks which samples are present: only 16-bit samples have this layout.
-bool is_auxiliary(const WavHeader& header, std::string_view name) {
+bool is_auxiliary(const Header& header, std::string_view name) {
   return bare_name(name) == "aux" && header.figure.kind == 'i' && header.figure.bytes == 2;
 }
 
-void label_channels(const WavHeader& header, const Fields& fields, WavLabels& labels) {
+void label_channels(const Header& header, const Fields& fields, Labels& labels) {
   const bool is_whole = header.figure.kind != 'f';
   const std::string_view own_unit = is_whole ? " (counts)" : "";
   const double full_scale =
@@ -82,7 +82,7 @@ void label_channels(const WavHeader& header, const Fields& fields, WavLabels& la
                                                         fmt::join(scaled, ", "))});
 }
 
-void note_scale(const WavHeader& header, WavLabels& labels) {
+void note_scale(const Header& header, Labels& labels) {
   const std::size_t bits = 8 * header.figure.bytes;
   if (header.figure.kind == 'f') {
     labels.notes.push_back(
@@ -102,8 +102,8 @@ void note_scale(const WavHeader& header, WavLabels& labels) {
 
 }  // namespace
 
-WavLabels label_wav(const WavHeader& header) {
-  WavLabels labels;
+Labels labels_of(const Header& header) {
+  Labels labels;
   const Fields fields = fields_of(find(header.texts, "ICMT"));
   note_scale(header, labels);
   label_channels(header, fields, labels);
@@ -117,4 +117,4 @@ WavLabels label_wav(const WavHeader& header) {
   return labels;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::wav

@@ -8,10 +8,10 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/io/wav/header.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::wav {
 
 /// Channel information from the texts of a WAV file.
-struct WavLabels {
+struct Labels {
   std::vector<std::string> headings;  ///< one per channel, with units
   std::vector<double> factors;        ///< one per channel: 1 unless a full scale is given
   /// The channel whose highest bit marks a sample as filled in because the data were lost.
@@ -23,6 +23,6 @@ struct WavLabels {
 /// Channels are "channel_1", … unless the comment names them: "Channel-1: Accel-X", "Scale-1: 8"
 /// (in g, for the full scale of the integers).
 /// Source: Open Movement, omconvert, "WAV file".
-[[nodiscard]] WavLabels label_wav(const WavHeader& header);
+[[nodiscard]] Labels labels_of(const Header& header);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::wav

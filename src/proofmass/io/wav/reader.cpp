@@ -14,13 +14,13 @@
 #include "proofmass/io/wav/header.hpp"
 #include "proofmass/io/wav/labels.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::wav {
 namespace {
 
-class WavTable final : public TableReader {
+class Table final : public TableReader {
  public:
-  WavTable(std::unique_ptr<RandomBytes> file, WavHeader header)
-      : file_(std::move(file)), header_(std::move(header)), labels_(label_wav(header_)) {
+  Table(std::unique_ptr<RandomBytes> file, Header header)
+      : file_(std::move(file)), header_(std::move(header)), labels_(labels_of(header_)) {
     head_.format = "WAV";
     head_.columns = header_.channels;
     head_.headings = labels_.headings;
@@ -97,8 +97,8 @@ class WavTable final : public TableReader {
   }
 
   std::unique_ptr<RandomBytes> file_;
-  WavHeader header_;
-  WavLabels labels_;
+  Header header_;
+  Labels labels_;
   TableHead head_;
   std::uint64_t rows_read_ = 0;
   std::uint64_t lost_ = 0;
@@ -108,24 +108,24 @@ class WavTable final : public TableReader {
 
 }  // namespace
 
-bool claims_wav(std::string_view head, std::string_view) {
+bool claims(std::string_view head, std::string_view) {
   if (head.size() < 12) return false;
   const std::string_view form = head.substr(0, 4);
   return (form == "RIFF" || form == "RIFX" || form == "RF64" || form == "BW64") &&
          head.substr(8, 4) == "WAVE";
 }
 
-Result<std::unique_ptr<TableFile>> open_wav(std::unique_ptr<PeekSource> source,
-                                            const ReadOptions& options) {
+Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
+                                        const ReadOptions& options) {
   auto file = random_bytes_of(std::move(source), options.progress);
   if (!file) return file.error();
   std::unique_ptr<RandomBytes> bytes = std::move(file).value();
-  auto header = read_wav_header(*bytes);
+  auto header = read_header(*bytes);
   if (!header) return header.error();
   auto reader = recording_reader_of(
-      std::make_unique<WavTable>(std::move(bytes), std::move(header).value()), options);
+      std::make_unique<Table>(std::move(bytes), std::move(header).value()), options);
   if (!reader) return reader.error();
   return only_table(std::move(reader).value());
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::wav

@@ -8,10 +8,10 @@
 #include "proofmass/io/read_recording.hpp"
 #include "proofmass/io/table_file.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::wav {
 
 /// True if the first bytes are those of RIFF, RIFX, RF64 or BW64 with audio.
-[[nodiscard]] bool claims_wav(std::string_view head, std::string_view file_name);
+[[nodiscard]] bool claims(std::string_view head, std::string_view file_name);
 
 /// Opens a WAV file as a recording at its sample rate. Integers are kept as counts; floating-point
 /// samples are kept without a unit. If the comment of the file gives channel names and their full
@@ -20,7 +20,7 @@ namespace proofmass::io {
 /// Source: IBM and Microsoft, "Multimedia Programming Interface and Data Specifications 1.0"
 /// (1991); EBU Tech 3306 (RF64, 2009); Open Movement, omconvert (comment fields). Errors: corrupt
 /// (naming the byte), unsupported (compressed audio), unreadable.
-[[nodiscard]] Result<std::unique_ptr<TableFile>> open_wav(std::unique_ptr<PeekSource> source,
-                                                          const ReadOptions& options);
+[[nodiscard]] Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
+                                                      const ReadOptions& options);
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::wav

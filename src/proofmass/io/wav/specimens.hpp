@@ -53,7 +53,7 @@ inline std::string riff(const std::string& chunks, Order order = Order::little) 
 }
 
 /// Samples in a file of the simplest kind.
-inline std::string wav(const WavFormat& f, const std::string& samples) {
+inline std::string wav_file(const WavFormat& f, const std::string& samples) {
   return riff(format_chunk(f) + chunk("data", samples, f.order), f.order);
 }
 

@@ -4,7 +4,7 @@
 #include "proofmass/io/test_support.hpp"
 #include "proofmass/io/wav/specimens.hpp"
 
-namespace proofmass::io::wav_test {
+namespace proofmass::io::wav::wav_test {
 namespace {
 
 using namespace specimen;
@@ -34,26 +34,27 @@ std::string export_of_axivity(const std::string& texts) {
 
 TEST(Wav, ReadsEveryKindOfSample) {
   const Values values{-2.0, 0.0, 96.0};
-  EXPECT_EQ(first_channel(wav({1, 1, 100, 16}, bytes_of<std::int16_t>({-2, 0, 96}))), values);
-  EXPECT_EQ(first_channel(wav({1, 1, 100, 32}, bytes_of<std::int32_t>({-2, 0, 96}))), values);
-  EXPECT_EQ(first_channel(wav({3, 1, 100, 32}, bytes_of<float>({-2, 0, 96}))), values);
-  EXPECT_EQ(first_channel(wav({3, 1, 100, 64}, bytes_of<double>({-2, 0, 96}))), values);
-  EXPECT_EQ(first_channel(wav({1, 1, 100, 24}, std::string("\xFE\xFF\xFF\0\0\0\x60\0\0", 9))),
+  EXPECT_EQ(first_channel(wav_file({1, 1, 100, 16}, bytes_of<std::int16_t>({-2, 0, 96}))), values);
+  EXPECT_EQ(first_channel(wav_file({1, 1, 100, 32}, bytes_of<std::int32_t>({-2, 0, 96}))), values);
+  EXPECT_EQ(first_channel(wav_file({3, 1, 100, 32}, bytes_of<float>({-2, 0, 96}))), values);
+  EXPECT_EQ(first_channel(wav_file({3, 1, 100, 64}, bytes_of<double>({-2, 0, 96}))), values);
+  EXPECT_EQ(first_channel(wav_file({1, 1, 100, 24}, std::string("\xFE\xFF\xFF\0\0\0\x60\0\0", 9))),
             values);
-  EXPECT_EQ(first_channel(wav({1, 1, 100, 8}, "\x7E\x80\xE0")), (Values{126, 128, 224}));
+  EXPECT_EQ(first_channel(wav_file({1, 1, 100, 8}, "\x7E\x80\xE0")), (Values{126, 128, 224}));
 }
 
 TEST(Wav, ReadsBigEndianFiles) {
-  EXPECT_EQ(first_channel(
-                wav({1, 1, 100, 16, Order::big}, bytes_of<std::int16_t>({-2, 513}, Order::big))),
+  EXPECT_EQ(first_channel(wav_file({1, 1, 100, 16, Order::big},
+                                   bytes_of<std::int16_t>({-2, 513}, Order::big))),
             (Values{-2, 513}));
-  EXPECT_EQ(
-      first_channel(wav({1, 1, 100, 24, Order::big}, std::string("\xFF\xFF\xFE\0\x02\x01", 6))),
-      (Values{-2, 513}));
+  EXPECT_EQ(first_channel(
+                wav_file({1, 1, 100, 24, Order::big}, std::string("\xFF\xFF\xFE\0\x02\x01", 6))),
+            (Values{-2, 513}));
 }
 
 TEST(Wav, KeepsChannelsApartAtTheRateOfTheFile) {
-  const auto read = read_text(wav({1, 3, 400, 16}, bytes_of<std::int16_t>({1, 2, 3, 4, 5, 6})));
+  const auto read =
+      read_text(wav_file({1, 3, 400, 16}, bytes_of<std::int16_t>({1, 2, 3, 4, 5, 6})));
   ASSERT_TRUE(read.has_value()) << read.error().message;
   EXPECT_EQ(read->format, "WAV");
   EXPECT_EQ(read->time.rate_hz, 400.0);
@@ -106,7 +107,7 @@ TEST(Wav, ReadsToTheEndWhereTheRecorderWasKilled) {
 }
 
 TEST(Wav, TellsWhereItBreaksOff) {
-  const std::string whole = wav({1, 2, 100, 16}, bytes_of<std::int16_t>({1, 2, 3, 4, 5, 6}));
+  const std::string whole = wav_file({1, 2, 100, 16}, bytes_of<std::int16_t>({1, 2, 3, 4, 5, 6}));
   const auto read = read_text(whole.substr(0, whole.size() - 1));
   ASSERT_TRUE(read.has_value()) << read.error().message;
   EXPECT_EQ(read->samples(), 2u);
@@ -145,15 +146,15 @@ TEST(Wav, BelievesNoLengthBeyondTheFile) {
 }
 
 TEST(Wav, RefusesWhatItDoesNotRead) {
-  EXPECT_EQ(code_of(wav({2, 1, 100, 4}, "abcd")), Errc::unsupported);
-  EXPECT_EQ(code_of(wav({7, 1, 100, 8}, "abcd")), Errc::unsupported);
-  EXPECT_EQ(code_of(wav({1, 1, 100, 40}, "abcdefghij")), Errc::unsupported);
-  EXPECT_EQ(code_of(wav({3, 1, 100, 16}, "abcd")), Errc::unsupported);
-  EXPECT_EQ(code_of(wav({1, 0, 100, 16}, "abcd")), Errc::corrupt);
+  EXPECT_EQ(code_of(wav_file({2, 1, 100, 4}, "abcd")), Errc::unsupported);
+  EXPECT_EQ(code_of(wav_file({7, 1, 100, 8}, "abcd")), Errc::unsupported);
+  EXPECT_EQ(code_of(wav_file({1, 1, 100, 40}, "abcdefghij")), Errc::unsupported);
+  EXPECT_EQ(code_of(wav_file({3, 1, 100, 16}, "abcd")), Errc::unsupported);
+  EXPECT_EQ(code_of(wav_file({1, 0, 100, 16}, "abcd")), Errc::corrupt);
   EXPECT_EQ(code_of(riff(chunk("data", "abcd"))), Errc::corrupt);
   EXPECT_EQ(code_of(riff(format_chunk({}))), Errc::corrupt);
   EXPECT_EQ(code_of(riff(format_chunk({}) + chunk("data", ""))), Errc::too_few_samples);
 }
 
 }  // namespace
-}  // namespace proofmass::io::wav_test
+}  // namespace proofmass::io::wav::wav_test

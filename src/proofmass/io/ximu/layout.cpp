@@ -10,7 +10,7 @@
 #include "proofmass/io/ximu/rates.hpp"
 #include "proofmass/io/ximu/reader.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::ximu {
 namespace {
 
 /// A data file by the end of its name, and the register with its rate.
@@ -127,7 +127,7 @@ std::optional<double> counted_rate_hz(Archive& archive,
   const std::uint64_t rows =
       rows_between(archive, entry, dates.front().number, dates.back().number);
   how = fmt::format("{} rows in the {} s of {}", rows, seconds, archive.entries()[clock].name);
-  return ximu_rate_counted(rows, seconds);
+  return rate_counted(rows, seconds);
 }
 
 /// The rate of the card's own file beside the CSV made from it.
@@ -140,7 +140,7 @@ std::optional<double> card_rate_hz(Archive& archive, const std::string& session,
     auto bytes = random_bytes_of(std::move(source).value(), {});
     if (!bytes) return std::nullopt;
     how = "the date and time packets of " + entries[e].name;
-    return ximu_inertial_rate_hz(**bytes);
+    return inertial_rate_hz(**bytes);
   }
   return std::nullopt;
 }
@@ -155,7 +155,7 @@ MemberHint hint_of(Archive& archive,
   const std::size_t registers = find_entry(archive, session + "_Registers");
   if (registers < archive.entries().size()) {
     if (const auto value = register_in(text_of(archive, registers), kind.rate_register))
-      hint.rate_hz = ximu_rate_hz(*value);
+      hint.rate_hz = rate_hz_of(*value);
     how = fmt::format("{} of {}", kind.rate_register, archive.entries()[registers].name);
   }
   if (!hint.rate_hz) hint.rate_hz = counted_rate_hz(archive, entry, session, how);
@@ -173,7 +173,7 @@ MemberHint hint_of(Archive& archive,
 
 }  // namespace
 
-void read_ximu_layout(Archive& archive, ArchiveLayout& layout) {
+void read_layout(Archive& archive, ArchiveLayout& layout) {
   const auto entries = archive.entries();
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const std::string stem = without_endings(entries[e].name);
@@ -189,4 +189,4 @@ void read_ximu_layout(Archive& archive, ArchiveLayout& layout) {
   }
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::ximu

@@ -3,12 +3,12 @@
 #include <chrono>
 #include <numeric>
 
-namespace proofmass::io {
+namespace proofmass::io::ximu {
 namespace {
 
 /// Packet length in bytes by type, header and checksum included; 0: a command of variable length.
-constexpr std::array<std::uint8_t, ximu_headers> lengths{4,  0,  4, 8,  2,  8,  6,  6, 20,
-                                                         20, 10, 4, 18, 18, 10, 26, 26};
+constexpr std::array<std::uint8_t, headers> lengths{4,  0,  4, 8,  2,  8,  6,  6, 20,
+                                                    20, 10, 4, 18, 18, 10, 26, 26};
 
 std::optional<unsigned> from_bcd(std::uint8_t byte) {
   const unsigned tens = byte >> 4;
@@ -19,12 +19,12 @@ std::optional<unsigned> from_bcd(std::uint8_t byte) {
 
 }  // namespace
 
-std::int16_t XimuPacket::figure(std::size_t k) const {
+std::int16_t Packet::figure(std::size_t k) const {
   return static_cast<std::int16_t>(data[2 * k] << 8 | data[2 * k + 1]);
 }
 
-std::optional<std::int64_t> XimuPacket::date_time_s() const {
-  if (header != ximu_date_time_kind || data.size() != 6) return std::nullopt;
+std::optional<std::int64_t> Packet::date_time_s() const {
+  if (header != date_time_kind || data.size() != 6) return std::nullopt;
   std::array<unsigned, 6> part{};
   for (std::size_t i = 0; i < part.size(); ++i) {
     const auto figure = from_bcd(data[i]);
@@ -38,7 +38,7 @@ std::optional<std::int64_t> XimuPacket::date_time_s() const {
   return days * 86'400 + part[3] * 3'600 + part[4] * 60 + part[5];
 }
 
-XimuDecoder::Outcome XimuDecoder::take(std::uint8_t byte) {
+Decoder::Outcome Decoder::take(std::uint8_t byte) {
   if (taken_ < longest) sent_[taken_] = byte & 0x7Fu;
   if (taken_ <= longest) ++taken_;
   const bool ends = (byte & 0x80u) != 0;
@@ -48,14 +48,14 @@ XimuDecoder::Outcome XimuDecoder::take(std::uint8_t byte) {
   return taken > longest ? Outcome::damaged : end_packet(taken);
 }
 
-XimuDecoder::Outcome XimuDecoder::end_packet(std::size_t taken) {
+Decoder::Outcome Decoder::end_packet(std::size_t taken) {
   const std::size_t length = taken * 7 / 8;
   for (std::size_t i = 0; i < length; ++i) {
     const std::size_t bit = 8 * i;
     const unsigned pair = sent_[bit / 7] << 7u | (bit / 7 + 1 < taken ? sent_[bit / 7 + 1] : 0u);
     bytes_[i] = static_cast<std::uint8_t>(pair >> (6 - bit % 7));
   }
-  if (length < 2 || bytes_[0] >= ximu_headers) return Outcome::damaged;
+  if (length < 2 || bytes_[0] >= headers) return Outcome::damaged;
   const std::size_t right_length = lengths[bytes_[0]];
   if (right_length != 0 && right_length != length) return Outcome::damaged;
   const unsigned sum =
@@ -65,4 +65,4 @@ XimuDecoder::Outcome XimuDecoder::end_packet(std::size_t taken) {
   return Outcome::packet;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::ximu

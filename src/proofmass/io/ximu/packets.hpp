@@ -6,10 +6,10 @@
 #include <optional>
 #include <span>
 
-namespace proofmass::io {
+namespace proofmass::io::ximu {
 
 /// A packet of x-io's x-IMU: a header with its type, big-endian numbers, a checksum.
-struct XimuPacket {
+struct Packet {
   std::uint8_t header = 0;
   std::span<const std::uint8_t> data;  ///< between header and checksum
 
@@ -20,15 +20,15 @@ struct XimuPacket {
   [[nodiscard]] std::optional<std::int64_t> date_time_s() const;
 };
 
-inline constexpr std::uint8_t ximu_date_time_kind = 5;
-inline constexpr std::uint8_t ximu_cal_inertial = 9;
-inline constexpr std::size_t ximu_headers = 17;
+inline constexpr std::uint8_t date_time_kind = 5;
+inline constexpr std::uint8_t cal_inertial = 9;
+inline constexpr std::size_t headers = 17;
 
 /// Decodes an x-IMU's bytes: each contains seven bits of a packet, and the highest bit is set in
 /// its last.
 /// Source: x-io Technologies, x-IMU User Manual 5.2, "Packet structure"; the numbers of a file and
 /// of the CSV that the manufacturer's program wrote from it are the same.
-class XimuDecoder {
+class Decoder {
  public:
   enum class Outcome { more, packet, damaged };
 
@@ -36,7 +36,7 @@ class XimuDecoder {
   /// or with a wrong length or checksum.
   Outcome take(std::uint8_t byte);
   /// The last complete packet; valid until the next byte.
-  [[nodiscard]] const XimuPacket& packet() const { return packet_; }
+  [[nodiscard]] const Packet& packet() const { return packet_; }
   /// True if part of a packet was taken.
   [[nodiscard]] bool is_inside() const { return taken_ > 0; }
 
@@ -48,7 +48,7 @@ class XimuDecoder {
   std::array<std::uint8_t, longest> sent_{};
   std::array<std::uint8_t, longest> bytes_{};
   std::size_t taken_ = 0;
-  XimuPacket packet_;
+  Packet packet_;
 };
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::ximu

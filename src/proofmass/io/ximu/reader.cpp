@@ -10,7 +10,7 @@
 #include "proofmass/io/ximu/packets.hpp"
 #include "proofmass/io/ximu/rates.hpp"
 
-namespace proofmass::io {
+namespace proofmass::io::ximu {
 namespace {
 
 /// A column of a packet type; its raw value is in units of `1 / 2^bits`.
@@ -48,12 +48,11 @@ constexpr std::array inertial = std::to_array<Column>({{"Gyroscope X (deg/s)", 4
 constexpr std::array quaternion = std::to_array<Column>(
     {{"Element 0", 15}, {"Element 1", 15}, {"Element 2", 15}, {"Element 3", 15}});
 // Source: x-io Technologies, x-IMU User Manual 5.2, "Fixed-point format".
-constexpr std::array kinds =
-    std::to_array<Kind>({{ximu_cal_inertial, "CalInertialAndMag", inertial},
-                         {8, "RawInertialAndMag", raw_inertial},
-                         {10, "Quaternion", quaternion},
-                         {7, "CalBattAndTherm", battery},
-                         {6, "RawBattAndTherm", raw_battery}});
+constexpr std::array kinds = std::to_array<Kind>({{cal_inertial, "CalInertialAndMag", inertial},
+                                                  {8, "RawInertialAndMag", raw_inertial},
+                                                  {10, "Quaternion", quaternion},
+                                                  {7, "CalBattAndTherm", battery},
+                                                  {6, "RawBattAndTherm", raw_battery}});
 
 /// The packets of a file, one after another.
 class PacketStream {
@@ -61,13 +60,13 @@ class PacketStream {
   explicit PacketStream(const RandomBytes& bytes) : bytes_(bytes) {}
 
   /// The next good packet; nullptr at the end.
-  Result<const XimuPacket*> next() {
+  Result<const Packet*> next() {
     for (;;) {
       while (at_ < filled_) {
         const auto outcome = decoder_.take(static_cast<std::uint8_t>(buffer_[at_++]));
-        if (outcome == XimuDecoder::Outcome::more) continue;
+        if (outcome == Decoder::Outcome::more) continue;
         ++packets_;
-        if (outcome == XimuDecoder::Outcome::packet) return &decoder_.packet();
+        if (outcome == Decoder::Outcome::packet) return &decoder_.packet();
         if (damaged_++ == 0) first_damaged_ = begin_ + at_;
       }
       begin_ += filled_;
@@ -75,7 +74,7 @@ class PacketStream {
       if (!count) return count.error();
       filled_ = *count;
       at_ = 0;
-      if (filled_ == 0) return static_cast<const XimuPacket*>(nullptr);
+      if (filled_ == 0) return static_cast<const Packet*>(nullptr);
     }
   }
   [[nodiscard]] std::uint64_t position() const { return begin_ + at_; }
@@ -96,7 +95,7 @@ class PacketStream {
 
  private:
   const RandomBytes& bytes_;
-  XimuDecoder decoder_;
+  Decoder decoder_;
   std::array<char, 1 << 16> buffer_{};
   std::size_t at_ = 0;
   std::size_t filled_ = 0;
@@ -106,7 +105,7 @@ class PacketStream {
   std::uint64_t first_damaged_ = 0;
 };
 
-using Counts = std::array<std::uint64_t, ximu_headers>;
+using Counts = std::array<std::uint64_t, headers>;
 
 /// Contents of a file: packets of each type, in total and until its first and last date and time.
 struct Survey {
@@ -116,7 +115,7 @@ struct Survey {
   std::optional<std::int64_t> first_s;
   std::int64_t last_s = 0;
 
-  void add(const XimuPacket& packet) {
+  void add(const Packet& packet) {
     ++all[packet.header];
     const auto time_s = packet.date_time_s();
     if (!time_s) return;
@@ -129,8 +128,8 @@ struct Survey {
   }
   [[nodiscard]] std::optional<double> rate_hz(std::uint8_t kind) const {
     if (!first_s) return std::nullopt;
-    return ximu_rate_counted(until_last[kind] - until_first[kind],
-                             static_cast<double>(last_s - *first_s));
+    return rate_counted(until_last[kind] - until_first[kind],
+                        static_cast<double>(last_s - *first_s));
   }
 };
 
@@ -145,9 +144,9 @@ Result<Survey> survey_of(const RandomBytes& bytes) {
   }
 }
 
-class XimuTable final : public TableReader {
+class Table final : public TableReader {
  public:
-  XimuTable(std::shared_ptr<const RandomBytes> bytes, const Kind& kind, const Survey& survey)
+  Table(std::shared_ptr<const RandomBytes> bytes, const Kind& kind, const Survey& survey)
       : bytes_(std::move(bytes)), kind_(kind), stream_(*bytes_) {
     head_.format = "x-IMU";
     for (const Column& column : kind.columns) head_.headings.emplace_back(column.heading);
@@ -204,9 +203,9 @@ class XimuTable final : public TableReader {
   TableHead head_;
 };
 
-class XimuFile final : public TableFile {
+class File final : public TableFile {
  public:
-  XimuFile(std::shared_ptr<const RandomBytes> bytes, const Survey& survey)
+  File(std::shared_ptr<const RandomBytes> bytes, const Survey& survey)
       : bytes_(std::move(bytes)), survey_(survey) {
     for (const Kind& kind : kinds) {
       if (survey_.all[kind.header] == 0) continue;
@@ -222,8 +221,7 @@ class XimuFile final : public TableFile {
   [[nodiscard]] std::span<const TableSummary> tables() const override { return summaries_; }
   [[nodiscard]] Result<std::unique_ptr<RecordingReader>> open(std::size_t table,
                                                               const ReadOptions& options) override {
-    return recording_reader_of(std::make_unique<XimuTable>(bytes_, *kinds_[table], survey_),
-                               options);
+    return recording_reader_of(std::make_unique<Table>(bytes_, *kinds_[table], survey_), options);
   }
 
  private:
@@ -235,34 +233,34 @@ class XimuFile final : public TableFile {
 
 }  // namespace
 
-bool claims_ximu(std::string_view head, std::string_view) {
-  XimuDecoder decoder;
+bool claims(std::string_view head, std::string_view) {
+  Decoder decoder;
   std::size_t good = 0;
   for (const char c : head) {
     const auto outcome = decoder.take(static_cast<std::uint8_t>(c));
-    if (outcome == XimuDecoder::Outcome::damaged) return false;
+    if (outcome == Decoder::Outcome::damaged) return false;
     constexpr std::size_t enough = 2;  // one in 65 536 random byte sequences would have as many
-    if (outcome == XimuDecoder::Outcome::packet && ++good == enough) return true;
+    if (outcome == Decoder::Outcome::packet && ++good == enough) return true;
   }
   return false;
 }
 
-Result<std::unique_ptr<TableFile>> open_ximu(std::unique_ptr<PeekSource> source,
-                                             const ReadOptions& options) {
+Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
+                                        const ReadOptions& options) {
   auto bytes = random_bytes_of(std::move(source), options.progress);
   if (!bytes) return bytes.error();
   std::shared_ptr<const RandomBytes> shared = std::move(bytes).value();
   const auto survey = survey_of(*shared);
   if (!survey) return survey.error();
-  auto file = std::make_unique<XimuFile>(std::move(shared), *survey);
+  auto file = std::make_unique<File>(std::move(shared), *survey);
   if (file->tables().empty())
     return Error{Errc::too_few_samples, "holds packets of an x-IMU, but none of figures"};
   return std::unique_ptr<TableFile>(std::move(file));
 }
 
-std::optional<double> ximu_inertial_rate_hz(const RandomBytes& bytes) {
+std::optional<double> inertial_rate_hz(const RandomBytes& bytes) {
   const auto survey = survey_of(bytes);
-  return survey ? survey->rate_hz(ximu_cal_inertial) : std::nullopt;
+  return survey ? survey->rate_hz(cal_inertial) : std::nullopt;
 }
 
-}  // namespace proofmass::io
+}  // namespace proofmass::io::ximu

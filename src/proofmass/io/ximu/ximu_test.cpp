@@ -5,7 +5,7 @@
 #include "proofmass/io/ximu/rates.hpp"
 #include "proofmass/io/ximu/specimens.hpp"
 
-namespace proofmass::io::ximu_test {
+namespace proofmass::io::ximu::ximu_test {
 namespace {
 
 using specimen::ximu_date_time;
@@ -23,16 +23,16 @@ std::string session(int seconds, int a_second) {
   return bytes;
 }
 
-TEST(XimuDecoder, TakesTheMakersPacketApart) {
+TEST(Decoder, TakesTheMakersPacketApart) {
   // The first packet of a published file: 2000-01-01 10:20:54.
-  XimuDecoder decoder;
+  Decoder decoder;
   const std::string sent("\x02\x40\x00\x10\x08\x40\x40\x54\x45\xC0", 10);
   for (const char c : sent) {
     const bool is_last = c == '\xC0';
     EXPECT_EQ(decoder.take(static_cast<std::uint8_t>(c)),
-              is_last ? XimuDecoder::Outcome::packet : XimuDecoder::Outcome::more);
+              is_last ? Decoder::Outcome::packet : Decoder::Outcome::more);
   }
-  EXPECT_EQ(decoder.packet().header, ximu_date_time_kind);
+  EXPECT_EQ(decoder.packet().header, date_time_kind);
   EXPECT_EQ(decoder.packet().date_time_s(), 946'722'054);
 }
 
@@ -118,13 +118,13 @@ TEST(Ximu, BrokenOffAnywhereKeepsWholePackets) {
 }
 
 TEST(XimuRate, IsAPowerOfTwoThatFits) {
-  EXPECT_EQ(ximu_rate_hz(9), 256.0);
-  EXPECT_EQ(ximu_rate_hz(0), std::nullopt);
-  EXPECT_EQ(ximu_rate_hz(11), std::nullopt);
-  EXPECT_EQ(ximu_rate_counted(11'520, 45.0), 256.0);
-  EXPECT_EQ(ximu_rate_counted(11'520, 9.0), std::nullopt);
-  EXPECT_EQ(ximu_rate_counted(8'000, 45.0), std::nullopt);
+  EXPECT_EQ(rate_hz_of(9), 256.0);
+  EXPECT_EQ(rate_hz_of(0), std::nullopt);
+  EXPECT_EQ(rate_hz_of(11), std::nullopt);
+  EXPECT_EQ(rate_counted(11'520, 45.0), 256.0);
+  EXPECT_EQ(rate_counted(11'520, 9.0), std::nullopt);
+  EXPECT_EQ(rate_counted(8'000, 45.0), std::nullopt);
 }
 
 }  // namespace
-}  // namespace proofmass::io::ximu_test
+}  // namespace proofmass::io::ximu::ximu_test
