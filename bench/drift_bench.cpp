@@ -49,7 +49,7 @@ Recording made_up(std::size_t n) {
 }
 
 // Levenberg–Marquardt over all samples; normal equations, one pass a step.
-Eigen::Vector3d plain_fit(const std::vector<double>& y, Eigen::Vector3d p) {
+Eigen::Vector3d plain_fit(View<double> y, Eigen::Vector3d p) {
   double lambda = 1e-3, least = HUGE_VAL;
   Eigen::Vector3d best = p, gradient = Eigen::Vector3d::Zero();
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
