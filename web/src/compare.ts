@@ -32,7 +32,7 @@ export function compareView(main: HTMLElement): View {
       h("div", { class: "head" }, h("a", { ...(picked[0] ? link(addressOf(picked[0])) : link({ v: "analysis" })) }, "‹ Back"), h("h1", {}, "Compare"), ...picked.map(chip), add, picked.length === 2 && h("button", { type: "button", class: "btn", onclick: () => show([...chosen].reverse()) }, "Swap")),
       picked.length === 0 && h("p", { class: "empty" }, "No run is chosen: begin an analysis, or add one that is done."),
     );
-    // Of one channel each; where a run has several, they are told apart by their names.
+    // One channel each; several channels of a run are distinguished by their names.
     const named: Named[] = pages.map((page, k) => ({ page, name: `${letter(k)} ${picked[k]?.files[0]?.split("/").at(-1) ?? ""}`, ink: inks[k % inks.length] ?? "grey" }));
     const titles = [...new Set(pages.flatMap((page) => figuresOf(page).map((figure) => figure.title)))].filter((title) => pages.every((page) => figuresOf(page).some((figure) => figure.title === title)));
     for (const title of pages.length > 0 ? titles : []) {

@@ -430,7 +430,7 @@ export function recordingView(main: HTMLElement, file: string): View {
         const asked = spanIn(`${params()["from"]},${params()["to"]}`);
         view = clamp(asked ?? all);
         drawn = true;
-        // Of many channels the accelerations are shown; the others are one click away.
+        // If there are many channels, the accelerations are shown; the others are one click away.
         if (params()["off"] === undefined && head.channels.length > 6 && head.channels.some((_, k) => isAcceleration(k)))
           head.channels.forEach((_, k) => !isAcceleration(k) && hidden.add(k));
         const accelerations = head.channels.some((_, k) => isAcceleration(k));

@@ -257,7 +257,7 @@ Uncertain uncertain_gravity_mps2(const InputFlags& flags,
   if (flags.gravity_mps2) return {gravity, 0.0};
   if (flags.latitude_deg) return {gravity, sensor::gravity_anomaly_std_mps2};
   notes.push_back({Severity::warning,
-                   "gravity: 9.80665 m/s^2 assumed; local gravity differs, which makes every "
+                   "gravity: 9.80665 m/s² assumed; local gravity differs, which makes every "
                    "scale uncertain by 0.15 %; give --gravity, or --latitude and --height"});
   return {gravity, sensor::gravity_std_on_earth_mps2};
 }

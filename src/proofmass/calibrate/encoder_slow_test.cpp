@@ -81,7 +81,7 @@ TEST_P(EncoderCoverage, IsThatStated) {
     coverage.add(*fit, wheel);
   }
   for (std::size_t order = 0; order < 2; ++order) {
-    // Of 200 components: 93 to 99 % with three standard deviations of the count below.
+    // 93 to 99 % of 200 components, with three standard deviations of the count below.
     EXPECT_GE(coverage.components[order], 182) << GetParam().name << ", order " << order + 1;
     if (coverage.named[order] < 50) continue;
     EXPECT_GE(coverage.amplitudes[order], 0.89 * coverage.named[order]) << GetParam().name;

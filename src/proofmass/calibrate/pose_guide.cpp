@@ -36,7 +36,7 @@ std::string seconds_words(double seconds) {
                        : fmt::format("{:.0f} min", std::ceil(whole / 60.0));
 }
 
-std::string behind(const std::string& words, const char* separator) {
+std::string after(const std::string& words, const char* separator) {
   return words.empty() ? "" : separator + words;
 }
 
@@ -102,7 +102,7 @@ void PoseGuide::State::begin_rest(const RestState& now, std::vector<GuideStep>& 
   }
   open = true;
   say(GuideKind::hold_still,
-      fmt::format("At rest{}: hold still.", behind(plan->place_words(mean), ", ")), steps);
+      fmt::format("At rest{}: hold still.", after(plan->place_words(mean), ", ")), steps);
 }
 
 void PoseGuide::State::lose(std::vector<GuideStep>& steps) {
@@ -125,7 +125,7 @@ void PoseGuide::State::capture(const RestState& now, std::vector<GuideStep>& ste
   std::vector<GuideStep> more = plan->take(poses);
   say(GuideKind::captured,
       fmt::format("Pose {} taken{} ({:.1f} s).", number,
-                  behind(plan->place_words(vector_of(now.mean)), ": "), now.until_s - now.since_s),
+                  after(plan->place_words(vector_of(now.mean)), ": "), now.until_s - now.since_s),
       steps);
   for (GuideStep& step : more) say(step.kind, std::move(step.text), steps);
   say_next(steps);
@@ -197,7 +197,7 @@ GuideLive PoseGuide::live() const {
       live.words = off.empty() ? "moving" : off;
       break;
     case RestPhase::settling:
-      live.words = "settling" + behind(off, ", ");
+      live.words = "settling" + after(off, ", ");
       break;
     case RestPhase::stuck:
       live.words = "the output does not change: is the sensor connected?";

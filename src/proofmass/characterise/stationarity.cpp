@@ -347,7 +347,7 @@ void StationarityTest::append(const StationarityTest& part) {
       octaves_[k].add(View<double>(&value, 1), made, buffer);
       if (!made.empty()) next = made.front();
     };
-    // The mean that spans the border, and the one behind it that waits for its partner.
+    // The mean that spans the border, and the one after it that waits for its partner.
     if (mean) add(*mean);
     if (k < part.octaves_.size()) {
       const Octave& other = part.octaves_[k];

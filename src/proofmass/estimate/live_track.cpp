@@ -215,7 +215,7 @@ class LiveTrack final : public LiveAnalysis {
                     LiveLevel{level, squares.dot(level_variance_)});
   }
 
-  /// Of the epochs; the stamps themselves may be arbitrary.
+  /// Highest rate of the epochs; the stamps themselves may be arbitrary.
   [[nodiscard]] double most_rate_hz() const { return 1.5 * options_.most_rate_hz; }
 
   [[nodiscard]] double density(const std::array<std::optional<double>, 3>& figures,

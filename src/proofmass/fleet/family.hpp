@@ -43,8 +43,8 @@ class FamilyTest {
   std::map<std::size_t, std::unique_ptr<NullScores>> known_;  ///< by the family's size
 };
 
-/// Of p-values, which are significant when among them at most a share `q` is expected to be so by
-/// chance; for each the smallest such q. Source: Y. Benjamini, Y. Hochberg, J. R. Stat. Soc. B 57
+/// For each p-value the smallest q with which it is significant, where at most a share q of the
+/// significant ones is expected to be so by chance. Source: Y. Benjamini, Y. Hochberg, J. R. Stat. Soc. B 57
 /// (1995) 289.
 [[nodiscard]] std::vector<double> adjusted_p(const std::vector<double>& p);
 

@@ -20,7 +20,7 @@ std::optional<double> number_in(std::string_view text) {
   return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
 }
 
-// Of "04:30:00.5" and what follows it: the digits of the seconds.
+// The digits of the seconds in "04:30:00.5" and what follows it.
 std::string_view seconds_in(std::string_view time) {
   constexpr std::size_t before = 6;
   if (time.size() <= before || time[before - 1] != ':') return "0";
@@ -28,7 +28,7 @@ std::string_view seconds_in(std::string_view time) {
   return time.substr(0, time.find_first_not_of("0123456789."));
 }
 
-// Of "04:30:00+02:00" what the zone's clock is ahead; 0 of "Z" and of none.
+// How far the zone's clock is ahead in "04:30:00+02:00"; 0 for "Z" and without a zone.
 std::optional<double> zone_s(std::string_view time) {
   const std::size_t at = time.find_first_of("+-");
   if (at == std::string_view::npos) return 0.0;

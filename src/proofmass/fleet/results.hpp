@@ -43,8 +43,8 @@ struct Shard {
   std::size_t i = 0, n = 1;
 };
 
-/// The journals of a folder of results. Of several lines for one recording the one that ended last
-/// counts. A line that a kill has left unfinished is skipped.
+/// The journals of a folder of results. Among several lines for one recording the one that
+/// ended last counts. A line that a kill has left unfinished is skipped.
 class Results {
  public:
   /// To read. Errors: unreadable (no such folder, no journal).

@@ -287,8 +287,8 @@ Status hold_limits(Summary& summary, const std::vector<Limit>& limits) {
 
 Result<Limit> parse_limit(const std::string& text) {
   const std::size_t at = text.find_first_of("<>");
-  const std::size_t behind = at == std::string::npos ? at : text.find_first_not_of("<>=", at);
-  const auto bound = behind == std::string::npos ? std::nullopt : figure_in(text.substr(behind));
+  const std::size_t after = at == std::string::npos ? at : text.find_first_not_of("<>=", at);
+  const auto bound = after == std::string::npos ? std::nullopt : figure_in(text.substr(after));
   if (!bound || at == 0)
     return Error{
         Errc::invalid_argument,

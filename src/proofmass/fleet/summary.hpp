@@ -81,8 +81,8 @@ struct Summary {
   std::vector<FigureSummary> figures;
 };
 
-/// Of all figures that come with a standard deviation, and where there is a verdict were
-/// identified; of inspect, mean and std. Out of family: FamilyTest on each figure and channel,
+/// Summarises all figures with a standard deviation, those with a verdict only where it is
+/// identified, and mean and std of inspect. Out of family: FamilyTest on each figure and channel,
 /// Benjamini and Hochberg over all of them together; trends likewise. Errors: unreadable;
 /// invalid_argument (a limit of a figure that is not there).
 [[nodiscard]] Result<Summary> summarise(const std::string& folder, const SummaryOptions& options);

@@ -248,7 +248,7 @@ TEST(TimeBase, FindsTheRateBehindStampsOfWholeTicks) {
   }
 }
 
-/// Of 8000 samples, those with these stamps in milliseconds are left.
+/// The samples of 8000 that are left have these stamps in milliseconds.
 void expect_rate_and_loss(const std::vector<std::string>& stamps, double rate_hz) {
   const auto read = read_text(table("t_ms", stamps));
   ASSERT_TRUE(read.has_value());

@@ -13,7 +13,7 @@ namespace proofmass::io {
 namespace {
 
 /// Support of a format for labels: beside the samples, or after them.
-enum class LabelRoom { none, beside, behind };
+enum class LabelRoom { none, beside, after };
 
 struct Extension {
   std::string_view ending;
@@ -26,11 +26,11 @@ constexpr std::array extensions = std::to_array<Extension>({
     {".csv.gz", create_csv, LabelRoom::beside, true},
     {".npy", create_npy},
     {".mat", matlab::create},
-    {".tdms", tdms::create, LabelRoom::behind},
-    {".h5", hdf5::create, LabelRoom::behind},
-    {".hdf5", hdf5::create, LabelRoom::behind},
-    {".mcap", mcap::create, LabelRoom::behind},
-    {".parquet", parquet::create, LabelRoom::behind},
+    {".tdms", tdms::create, LabelRoom::after},
+    {".h5", hdf5::create, LabelRoom::after},
+    {".hdf5", hdf5::create, LabelRoom::after},
+    {".mcap", mcap::create, LabelRoom::after},
+    {".parquet", parquet::create, LabelRoom::after},
 });
 
 std::string all_endings() {
@@ -75,7 +75,7 @@ Result<std::unique_ptr<RecordingWriter>> open_writer(const std::string& path,
 bool keeps_labels(const std::string& path, bool in_pieces) {
   const Extension* extension = extension_of(path);
   if (extension == nullptr || extension->labels == LabelRoom::none) return false;
-  return extension->labels == LabelRoom::behind || !in_pieces;
+  return extension->labels == LabelRoom::after || !in_pieces;
 }
 
 Block whole_of(const Recording& recording) {

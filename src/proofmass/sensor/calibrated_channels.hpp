@@ -37,7 +37,7 @@ struct Accelerometer {
 /// angular rates in rad/s, the others as they are.
 class CalibratedBlocks {
  public:
-  /// Of these channels of `head`, a recording that may be without values.
+  /// Blocks of these channels of `head`, a recording that may be without values.
   /// Errors: those of accelerometers() and apply().
   [[nodiscard]] static Result<CalibratedBlocks> make(const Recording& head,
                                                      std::vector<std::size_t> channels,

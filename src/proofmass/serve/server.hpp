@@ -26,7 +26,7 @@ struct ServerLimits {
   double requests_per_s = 400.0;  ///< all peers together, after a burst of as many
   std::size_t sockets = 32;       ///< WebSockets, besides the connections
   std::size_t socket_message_bytes = 4096;
-  /// Of each WebSocket: the oldest frames are left out beyond these.
+  /// Limits of each WebSocket, beyond which the oldest frames are left out.
   std::size_t socket_queue_bytes = std::size_t{16} << 20, socket_queue_frames = 64;
 };
 

@@ -85,7 +85,7 @@ class ServerTest : public testing::Test {
   [[nodiscard]] std::string head(const std::string& first, const std::string& more = {}) const {
     return fmt::format("{} HTTP/1.1\r\nHost: {}\r\n{}\r\n", first, host(), more);
   }
-  /// The status line and all behind it, of a request on a connection of its own.
+  /// The status line and all after it, of a request on a connection of its own.
   [[nodiscard]] std::string ask(const std::string& request) const {
     const Peer peer(server_->port());
     peer.send(request);

@@ -122,7 +122,8 @@ double scatter_of(const std::vector<double>& differences) {
   return 1.4826 * *middle;
 }
 
-/// Of |z|: a thousandth by chance among some 3 independent values a width and bin.
+/// Threshold of |z|, exceeded by chance in a thousandth of all series, with some 3 independent
+/// values a width and bin.
 double slip_threshold(std::size_t bins) {
   return std::sqrt(2.0 * std::log(3.0 * static_cast<double>(bins) / 1e-3));
 }

@@ -7,7 +7,7 @@
 
 namespace proofmass::signal {
 
-/// Lays recordings of one sensor behind each other on one even grid, as if they were one recording
+/// Places recordings of one sensor one after another on one even grid, as if they were one recording
 /// with gaps. Each is placed by its start on a clock common to all, so that rounding does not
 /// accumulate. One that starts up to a second before the end of the previous one follows it
 /// directly: the start of a file is often known to the second only. Gaps may be bounded: a week

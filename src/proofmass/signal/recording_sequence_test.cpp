@@ -8,7 +8,7 @@ namespace {
 TEST(RecordingSequence, CountsWhatIsMissingBetweenRecordings) {
   RecordingSequence sequence(10.0);
   EXPECT_EQ(sequence.append(100.0, 50).value(), 0U);   // 100 s … 105 s
-  EXPECT_EQ(sequence.append(105.0, 50).value(), 0U);   // directly behind
+  EXPECT_EQ(sequence.append(105.0, 50).value(), 0U);   // directly after
   EXPECT_EQ(sequence.append(112.0, 30).value(), 20U);  // 2 s later
   EXPECT_EQ(sequence.samples(), 150U);
 }

@@ -75,7 +75,7 @@ Result<Resampler> Resampler::make(const TimeBase& time,
   out.method_ = method;
   out.to_ = to;
   out.own_ = *own;
-  for (const Hole& hole : own->holes) out.first_behind_.push_back(hole.before);
+  for (const Hole& hole : own->holes) out.first_after_.push_back(hole.before);
   out.times_.reserve(samples);
   auto hole = own->holes.begin();
   std::size_t place = 0;
@@ -97,7 +97,7 @@ std::vector<Resampler::Place> Resampler::places_of(const TimeGrid& grid) const {
   std::vector<Place> out(grid.count, {0, nan});
   if (times_.empty()) return out;
   const double near = same_time / own_.rate_hz;
-  auto behind = first_behind_.begin();
+  auto after = first_after_.begin();
   std::size_t k = 0;
   for (std::size_t j = 0; j < grid.count; ++j) {
     const double t = grid.at(j);
@@ -108,8 +108,8 @@ std::vector<Resampler::Place> Resampler::places_of(const TimeGrid& grid) const {
       continue;
     }
     if (k + 1 == times_.size()) break;
-    while (behind != first_behind_.end() && *behind <= k) ++behind;
-    if (behind != first_behind_.end() && *behind == k + 1) continue;
+    while (after != first_after_.end() && *after <= k) ++after;
+    if (after != first_after_.end() && *after == k + 1) continue;
     out[j] = {k, (t - times_[k]) / (times_[k + 1] - times_[k])};
   }
   return out;
@@ -140,16 +140,16 @@ std::vector<double> Resampler::linear(View<double> values) const {
 std::vector<double> Resampler::cubic(View<double> values, const std::vector<Place>& places) const {
   std::vector<double> out;
   out.reserve(places.size());
-  auto behind = first_behind_.begin();
+  auto after = first_after_.begin();
   for (const auto& [before, fraction] : places) {
     if (std::isnan(fraction) || fraction == 0.0) {
       out.push_back(std::isnan(fraction) ? nan : values[before]);
       continue;
     }
     // The four samples around the time, or the four at the end, of the segment without gaps.
-    while (behind != first_behind_.end() && *behind <= before) ++behind;
-    const std::size_t begin = behind == first_behind_.begin() ? 0 : *std::prev(behind);
-    const std::size_t end = behind == first_behind_.end() ? values.size() : *behind;
+    while (after != first_after_.end() && *after <= before) ++after;
+    const std::size_t begin = after == first_after_.begin() ? 0 : *std::prev(after);
+    const std::size_t end = after == first_after_.end() ? values.size() : *after;
     const double straight = along(values[before], values[before + 1], fraction);
     out.push_back(straight);
     if (end - begin < 4) continue;

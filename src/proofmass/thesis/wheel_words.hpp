@@ -53,7 +53,7 @@ class Findings {
 /// "0.24 ± 0.03 m", in the display unit; "not known" without a value.
 [[nodiscard]] std::string said(const std::optional<Uncertain>& figure, const Kind& kind);
 
-/// Of a speed's runs, as it was set: "11".
+/// The speed of some runs, as it was set: "11".
 [[nodiscard]] std::string rpm_words(const SpeedStudy& speed);
 
 /// "rms over 50 simulated runs", or for a recording the reference of its errors.
@@ -87,7 +87,7 @@ class Findings {
 [[nodiscard]] std::vector<double> times(std::vector<double> values, double factor);
 /// a − b
 [[nodiscard]] std::vector<double> less(std::vector<double> a, const std::vector<double>& b);
-/// Of the finite ones.
+/// Root mean square of the finite values.
 [[nodiscard]] double rms(const std::vector<double>& values);
 [[nodiscard]] Uncertain rms_off(const std::vector<double>& estimate,
                                 const std::vector<double>& truth);

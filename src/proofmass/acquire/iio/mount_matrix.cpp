@@ -19,9 +19,9 @@ std::optional<MountMatrix> nine_numbers(std::string_view text) {
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), matrix[k]);
     if (problem != std::errc{}) return std::nullopt;
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    const char behind = k == 8 ? '\0' : k % 3 == 2 ? ';' : ',';
-    if (behind == '\0') break;
-    if (!text.starts_with(behind)) return std::nullopt;
+    const char after = k == 8 ? '\0' : k % 3 == 2 ? ';' : ',';
+    if (after == '\0') break;
+    if (!text.starts_with(after)) return std::nullopt;
     text.remove_prefix(1);
   }
   if (text.find_first_not_of(" \t\n") != std::string_view::npos) return std::nullopt;

@@ -44,7 +44,7 @@ TEST_F(SensorMergeOfTwo, LaysTheOtherOnTheLineBetweenItsNeighbours) {
   follow(0, 0.0);
   lead(5, 1.0);
   merge.take(out);
-  EXPECT_EQ(out.rows(), 0U) << "the other has nothing behind it yet";
+  EXPECT_EQ(out.rows(), 0U) << "the other has nothing after it yet";
   follow(20, 4.0);
   merge.take(out);
   ASSERT_EQ(out.rows(), 1U);

@@ -54,9 +54,9 @@ std::size_t PhyphoxCursor::first_new(std::span<const std::vector<double>> column
   if (found != rows.end())
     return static_cast<std::size_t>(found - rows.begin() + (had_.end() - wanted));
   // A buffer of low capacity may have dropped them; one that was cleared begins below.
-  const auto behind =
+  const auto after =
       std::ranges::find_if(times_s, [&](double time_s) { return time_s > had_.back().time_s; });
-  return behind == times_s.end() ? 0 : static_cast<std::size_t>(behind - times_s.begin());
+  return after == times_s.end() ? 0 : static_cast<std::size_t>(after - times_s.begin());
 }
 
 PhyphoxCursor::Range PhyphoxCursor::take(std::span<const std::vector<double>> columns) {

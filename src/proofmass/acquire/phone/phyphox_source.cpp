@@ -75,10 +75,10 @@ void PhyphoxSource::ask() {
     const PhyphoxGroup& group = start_.groups[k];
     const std::string time = query_text(group.time), from = start_.cursors[k].threshold();
     // For a full request the phone accepts no reference buffer.
-    const std::string behind = from == "full" ? from : from + "%7C" + time;
+    const std::string after = from == "full" ? from : from + "%7C" + time;
     target += fmt::format("{}{}={}", k == 0 ? '?' : '&', time, from);
     for (const std::string& buffer : group.buffers)
-      target += fmt::format("&{}={}", query_text(buffer), behind);
+      target += fmt::format("&{}={}", query_text(buffer), after);
   }
   client_->ask(std::move(target));
 }

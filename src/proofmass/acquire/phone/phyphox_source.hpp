@@ -53,7 +53,7 @@ class PhyphoxSource : public Source {
   std::vector<Note> notes_{};
   Clock::time_point next_question_{}, last_rows_{};
   bool asks_ends_ = false;     ///< the pending request does so
-  bool is_searching_ = false;  ///< the pending request searches behind a clock step back
+  bool is_searching_ = false;  ///< the pending request searches after a clock step back
   bool is_behind_ = false;     ///< rows wait for the next response
   bool was_measuring_ = true;
   int bad_answers_ = 0;  ///< consecutive

@@ -24,7 +24,7 @@ struct Identifiability {
 };
 
 /// From the columns of the design (rows × coefficients), weighted or not, with the norm of a column
-/// of ones. Of tied coefficients the least important is omitted: cross terms first, K0 and K1 last.
+/// of ones. The least important of tied coefficients is omitted: cross terms first, K0 and K1 last.
 [[nodiscard]] Identifiability identifiability(const Eigen::MatrixXd& design,
                                               const std::vector<sensor::Coefficient>& coefficients,
                                               double unit_length);

@@ -23,8 +23,8 @@ namespace proofmass::calibrate {
 
 inline constexpr double taken_rad = 15.0 * rad_per_deg;
 
-/// Of the 26 positions on the faces, edges and corners of a cube about the sensor, the one whose
-/// |f| the fit predicts with the largest variance, which adds most to ln |JᵀWJ| (D-optimal).
+/// The position whose |f| the fit predicts with the largest variance, which adds most to ln |JᵀWJ|
+/// (D-optimal), among the 26 on the faces, edges and corners of a cube about the sensor.
 /// Source: V. V. Fedorov, Theory of Optimal Experiments (1972), section 2.7.
 [[nodiscard]] NextPose next_pose(const Eigen::MatrixXd& information,
                                  const Parameters& p,

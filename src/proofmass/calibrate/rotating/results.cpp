@@ -124,7 +124,7 @@ double half_width(double std, double dof) {
   return std * student_t_quantile(0.975, dof);
 }
 
-// Of two slow figures, the bounds in it; their correlation that of the blocks.
+// Covariance of two slow figures: variances with their bounds, the correlation of the blocks.
 Eigen::Matrix2d slow_covariance(const Eigen::MatrixXd& J, const RotationEstimate& estimate) {
   const Eigen::Matrix2d blocks = estimate.covariance_of(J * estimate.blocks.scores);
   Eigen::Vector2d factor;

@@ -13,8 +13,8 @@ namespace proofmass::calibrate {
 ///
 /// A phase error ε moves E = S1 sin φ by S1 cos φ ε, so that its n-th harmonic moves the harmonics
 /// n ± 1. On two orthogonal axes it moves the tangential part of the output, cos φ E₁ − sin φ E₂,
-/// and not the radial part, sin φ E₁ + cos φ E₂. Of the sensor's terms, with q = C2/S1, p = S2/S1
-/// and t = S3/S1 of each axis, the radial part determines
+/// and not the radial part, sin φ E₁ + cos φ E₂. With q = C2/S1, p = S2/S1 and t = S3/S1 of each
+/// axis, the radial part determines of the sensor's terms
 ///
 ///     q₁ − p₂,   p₁ + q₂,   t₁ + t₂,
 ///

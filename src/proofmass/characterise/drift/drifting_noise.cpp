@@ -22,7 +22,7 @@ struct Candidate {
 
 // A Markov process x of variance 1, at a block's start and end and as its mean over the block,
 //     mean = g x0 + η,     x1 = φ x0 + ξ.
-// Of a random walk the means are no random walk: their steps are correlated by a quarter.
+// The means of a random walk are no random walk: their steps are correlated by a quarter.
 struct BlockAverages {
   double phi, g, mean_variance;
 

@@ -34,7 +34,7 @@ class NoiseChoice {
 
   /// White noise and a random walk, with flicker, with first-order Markov noise or with both:
   /// flicker if it gains 6 in twice the log-likelihood, a Markov term if it gains 16, as in
-  /// noise_fit.hpp, the more likely of the two; without those estimated as zero. Of terms that
+  /// noise_fit.hpp, the more likely of the two; without those estimated as zero. If terms
   /// explain as much, the random walk is kept: over the length of the recording it contributes
   /// most, so the interval is conservative.
   [[nodiscard]] NoiseColumns choose(const Eigen::VectorXd& z, const OrdinateMeans& means) const;

@@ -40,9 +40,9 @@ std::vector<Stretch> stretches(View<double> means) {
         part.end = ++k;
         continue;
       }
-      const std::size_t behind = end_of_gap(means, k);
-      if (behind - k > longest_gap) break;
-      k = behind;
+      const std::size_t after = end_of_gap(means, k);
+      if (after - k > longest_gap) break;
+      k = after;
     }
     if (part.end - part.first >= shortest_stretch) parts.push_back(part);
     k = end_of_gap(means, k);
@@ -50,7 +50,7 @@ std::vector<Stretch> stretches(View<double> means) {
   return parts;
 }
 
-double mean_of_neighbours(View<double> values, std::size_t gap, std::size_t behind) {
+double mean_of_neighbours(View<double> values, std::size_t gap, std::size_t after) {
   double sum = 0.0;
   std::size_t count = 0;
   const auto take = [&](double value) {
@@ -59,7 +59,7 @@ double mean_of_neighbours(View<double> values, std::size_t gap, std::size_t behi
     ++count;
   };
   for (std::size_t k = gap - std::min(neighbours, gap); k < gap; ++k) take(values[k]);
-  for (std::size_t k = behind; k < std::min(values.size(), behind + neighbours); ++k)
+  for (std::size_t k = after; k < std::min(values.size(), after + neighbours); ++k)
     take(values[k]);
   return sum / static_cast<double>(count);
 }
@@ -70,9 +70,9 @@ std::vector<double> filled(View<double> means, double& share) {
   std::size_t missing = 0;
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (!std::isnan(means[k])) continue;
-    const std::size_t behind = end_of_gap(means, k);
-    const double fill = mean_of_neighbours(means, k, behind);
-    for (; k < behind; ++k, ++missing) values[k] = fill;
+    const std::size_t after = end_of_gap(means, k);
+    const double fill = mean_of_neighbours(means, k, after);
+    for (; k < after; ++k, ++missing) values[k] = fill;
   }
   const auto n = static_cast<double>(values.size());
   share = 1.0 - static_cast<double>(missing) / n;
@@ -81,7 +81,7 @@ std::vector<double> filled(View<double> means, double& share) {
   return values;
 }
 
-// Of 1 unit/s: √(2/n) step Σ (j + ½) cos((j + ½) π k/n) and √step for the density, the sum being
+// Ordinate of a ramp of 1 unit/s: √(2/n) step Σ (j + ½) cos((j + ½) π k/n) and √step for the density, the sum being
 // the derivative of Σ sin((j + ½) θ) = (1 − cos nθ) / (2 sin(θ/2)) at θ = π k/n. None for even k.
 double ramp_amplitude(std::size_t k, std::size_t n, double step_s) {
   if (k % 2 == 0) return 0.0;

@@ -93,7 +93,7 @@ class WhittleLikelihood {
   std::vector<SpectralGroup> groups_;
   Eigen::MatrixXd columns_;
   Eigen::ArrayXd dof_, raw_, amplitude_, of_ramp_, rough_;
-  Eigen::Index ramp_rows_ = 0;  ///< the ramp reaches none of the groups behind
+  Eigen::Index ramp_rows_ = 0;  ///< the ramp reaches none of the later groups
 };
 
 }  // namespace proofmass::characterise

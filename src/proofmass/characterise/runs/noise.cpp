@@ -86,7 +86,7 @@ std::vector<RunNoiseTerm> all_terms() {
           {RunNoiseKind::markov, 1.0 / 6.0}};
 }
 
-// Of the terms above.
+// Models, as lists of the terms above.
 const std::vector<std::vector<int>> choices{
     {0}, {1},    {2},       {0, 1}, {0, 2}, {1, 2},    {0, 1, 2}, {3},    {0, 3},   {0, 3, 2},
     {4}, {0, 4}, {0, 4, 2}, {5},    {0, 5}, {0, 5, 2}, {6},       {0, 6}, {0, 6, 2}};
@@ -97,7 +97,7 @@ double parameters(const RunNoiseModel& model) {
   return static_cast<double>(model.terms.size()) + (has_memory ? 1.0 : 0.0);
 }
 
-// Of a sum of strengths, each times what its term has in it.
+// Estimates of Σ strength × part(term), one by each model.
 template <class Part>
 std::vector<VarianceEstimate> estimates(const RunNoise& noise, const Part& part) {
   if (noise.models.empty()) return {{}};

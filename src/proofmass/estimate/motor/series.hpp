@@ -23,7 +23,7 @@ struct Series {
 /// Speed of the drive, where it moves, and on which flank the gear bears.
 struct Motion {
   std::vector<double> speed_radps;
-  /// Of the load, for what depends on the position. Once there is a fit it is the model's angle:
+  /// The load's, for what depends on the position. Once there is a fit it is the model's angle:
   /// functions of the measured one contain its noise, which the coefficients would cancel, and the
   /// torque constant would come out too large.
   std::vector<double> angle_rad;

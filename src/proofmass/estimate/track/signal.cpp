@@ -215,7 +215,7 @@ std::optional<double> largest_turn_rad(const TrackSignal& signal) {
 
 namespace {
 
-// Of a window: its means and scatters.
+// Means and scatters of a window.
 struct Window {
   double length_s;
   Moments accel, velocity, position;

@@ -179,8 +179,8 @@ bool same_level(const SteadyPart& one, const SteadyPart& other, const std::array
   return true;
 }
 
-// Of the parts of one rest keeps those at the level of most blocks of `near`, the rests around it:
-// the others are motion at temporarily constant acceleration.
+// Keeps the parts of a rest at the level of most blocks of `near`, the rests around it: the others
+// are motion at temporarily constant acceleration.
 void keep_usual_level(std::span<const SteadyPart> near,
                       const std::array<double, 3>& std,
                       std::vector<SteadyPart>& parts) {

@@ -189,7 +189,7 @@ struct Excerpt {
 };
 
 template <int S>
-[[nodiscard]] Excerpt<S> liveliest(const WheelModel<S>& model, const WheelPrior& prior);
+[[nodiscard]] Excerpt<S> excerpt_to_tune(const WheelModel<S>& model, const WheelPrior& prior);
 
 struct TunedNoise {
   WheelNoise noise;

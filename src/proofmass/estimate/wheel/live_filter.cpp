@@ -168,7 +168,7 @@ void LiveWheelFilter<S>::step(const LiveInstant& instant) {
   if (time_s_ - stretch_start_s_ >= stretch_s) end_stretch();
 }
 
-/// Of the angle at this epoch, before its measurements.
+/// Standard deviation of the angle at this epoch, before its measurements.
 template <int S>
 double LiveWheelFilter<S>::predicted_std_rad() const {
   const auto to = model_.transition(main_.x.mean, 1);

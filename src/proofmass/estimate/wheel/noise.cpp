@@ -245,7 +245,7 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
 }
 
 template <int S>
-Excerpt<S> liveliest(const WheelModel<S>& model, const WheelPrior& prior) {
+Excerpt<S> excerpt_to_tune(const WheelModel<S>& model, const WheelPrior& prior) {
   constexpr std::size_t most_instants = 20'000, parts = 4;
   const std::size_t size = model.size();
   auto state = prior_state<S>(prior);
@@ -253,18 +253,18 @@ Excerpt<S> liveliest(const WheelModel<S>& model, const WheelPrior& prior) {
   if (best.last == size) return best;
   const std::size_t stride = most_instants / parts;
   std::vector<FilterState<wheel::states(S)>> states;
-  std::vector<double> restless;
+  std::vector<double> change;
   for (std::size_t first = 0; first < size; first += stride) {
     states.push_back(state);
     double sum = 0.0;
     filter(model, first, std::min(first + stride, size), wheel_gate, state,
            [&](std::size_t, const auto& s) { sum += std::pow(s.filtered.mean(wheel::accel), 2); });
-    restless.push_back(sum);
+    change.push_back(sum);
   }
   double most = -1.0;
-  for (std::size_t i = 0; i + parts <= restless.size(); ++i) {
+  for (std::size_t i = 0; i + parts <= change.size(); ++i) {
     double sum = 0.0;
-    for (std::size_t part = 0; part < parts; ++part) sum += restless[i + part];
+    for (std::size_t part = 0; part < parts; ++part) sum += change[i + part];
     if (sum <= most) continue;
     most = sum;
     best = {i * stride, std::min(i * stride + most_instants, size), states[i]};
@@ -320,8 +320,8 @@ TunedNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt, double fir
 
 template void settle_variance(const WheelModel<1>&, const WheelPrior&, WheelReadings&);
 template void settle_variance(const WheelModel<2>&, const WheelPrior&, WheelReadings&);
-template Excerpt<1> liveliest(const WheelModel<1>&, const WheelPrior&);
-template Excerpt<2> liveliest(const WheelModel<2>&, const WheelPrior&);
+template Excerpt<1> excerpt_to_tune(const WheelModel<1>&, const WheelPrior&);
+template Excerpt<2> excerpt_to_tune(const WheelModel<2>&, const WheelPrior&);
 template TunedNoise tune_noise(WheelModel<1>, const Excerpt<1>&, double);
 template TunedNoise tune_noise(WheelModel<2>, const Excerpt<2>&, double);
 

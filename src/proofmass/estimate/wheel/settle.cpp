@@ -88,7 +88,7 @@ Settled<S> settle(WheelReadings& readings,
   assume_rolling_radius(readings);
   adapt_ripple<S>(model.rolling_radius_m, readings.rolling_radius_m.value, readings, track.path);
   model.rolling_radius_m = readings.rolling_radius_m.value;
-  const Excerpt<S> excerpt = liveliest(model, prior);
+  const Excerpt<S> excerpt = excerpt_to_tune(model, prior);
   model.noise = tune_noise(model, excerpt, tuning_factor).noise;
   const FoundPlaces likeliest = likeliest_places(model, excerpt, prior, belief);
   WheelPath about = track.path;

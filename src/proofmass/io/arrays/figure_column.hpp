@@ -8,7 +8,7 @@
 namespace proofmass::io {
 
 /// Numbers `stride` bytes apart, the first at `bytes`, as the nearest doubles: out.size() of them.
-/// Of any kind but 0; integers of three bytes are supported too.
+/// Values of any kind but 0; integers of three bytes are supported too.
 void load_figures(const char* bytes,
                   std::size_t stride,
                   const FigureType& type,

@@ -63,7 +63,7 @@ class Chooser {
     return true;
   }
 
-  /// Of the tables within a group, selects those of the subgroup with the most values.
+  /// Selects the tables of the subgroup with the most values.
   Status take_best(std::string_view within) {
     struct Weight {
       bool may_be_samples = false;

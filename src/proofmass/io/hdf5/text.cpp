@@ -25,7 +25,7 @@ bool put_attribute(hid_t owner, const char* name, hid_t type, const void* value)
 }
 
 bool put_text(hid_t owner, const std::string& name, const std::string& text) {
-  // Of variable length, like the texts of h5py.
+  // Variable length, like the texts of h5py.
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, H5T_VARIABLE);
   H5Tset_cset(type, H5T_CSET_UTF8);

@@ -58,8 +58,8 @@ std::string_view tag_of(std::string_view line) {
   std::string_view longest;
   for (const std::string_view tag : tags) {
     if (!line.starts_with(tag) || tag.size() <= longest.size()) continue;
-    const char behind = line.size() == tag.size() ? '\t' : line[tag.size()];
-    const bool goes_on = std::isalnum(static_cast<unsigned char>(behind)) != 0 || behind == '_';
+    const char after = line.size() == tag.size() ? '\t' : line[tag.size()];
+    const bool goes_on = std::isalnum(static_cast<unsigned char>(after)) != 0 || after == '_';
     if (!goes_on) longest = tag;
   }
   return longest;

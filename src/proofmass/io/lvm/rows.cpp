@@ -17,8 +17,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 int decimals_in(std::string_view field, char point) {
   const std::size_t mark = field.find(point);
   if (mark == std::string_view::npos) return 0;
-  const std::string_view behind = field.substr(mark + 1);
-  return static_cast<int>(std::min(behind.find_first_not_of("0123456789"), behind.size()));
+  const std::string_view after = field.substr(mark + 1);
+  return static_cast<int>(std::min(after.find_first_not_of("0123456789"), after.size()));
 }
 
 }  // namespace
@@ -53,8 +53,8 @@ Result<bool> RowParser::row(std::span<double> figures, double& x) {
 const char* RowParser::end_of_field(const char* begin, const char* end) const {
   if (file_.separator == file_.point && *begin != file_.separator) {
     Decimal decimal;
-    const char* behind = scan_decimal(begin, file_.point, decimal);
-    if (behind != nullptr && (behind == end || *behind == file_.separator)) return behind;
+    const char* after = scan_decimal(begin, file_.point, decimal);
+    if (after != nullptr && (after == end || *after == file_.separator)) return after;
   }
   const void* found = std::memchr(begin, file_.separator, static_cast<std::size_t>(end - begin));
   return found == nullptr ? end : static_cast<const char*>(found);
@@ -67,19 +67,19 @@ void RowParser::parse(std::string_view line, std::span<double> figures, double& 
   const char* p = line.data();
   const char* const end = p + line.size();
   for (const int use : uses_) {
-    const char* behind = nullptr;
+    const char* after = nullptr;
     if (use >= 0) {
-      behind = parse_figure(p, end, figures[static_cast<std::size_t>(use)]);
+      after = parse_figure(p, end, figures[static_cast<std::size_t>(use)]);
       row.figures = static_cast<std::size_t>(use) + 1;
-      row.last = {p, static_cast<std::size_t>(behind - p)};
+      row.last = {p, static_cast<std::size_t>(after - p)};
     } else {
-      behind = use == comment ? end : end_of_field(p, end);
-      const std::string_view field(p, static_cast<std::size_t>(behind - p));
+      after = use == comment ? end : end_of_field(p, end);
+      const std::string_view field(p, static_cast<std::size_t>(after - p));
       if (use == x_value) x = stamps_.read(trimmed(field));
       take_field(use, field, row);
     }
-    if (behind == end) break;
-    p = behind + 1;
+    if (after == end) break;
+    p = after + 1;
   }
   judge(row, figures);
 }
@@ -107,15 +107,15 @@ void RowParser::judge(const Row& row, std::span<double> figures) {
 /// End of the field; its value, or NaN.
 const char* RowParser::parse_figure(const char* begin, const char* end, double& figure) {
   Decimal decimal;
-  const char* behind =
+  const char* after =
       *begin == file_.separator ? nullptr : scan_decimal(begin, file_.point, decimal);
-  if (behind != nullptr && (behind == end || *behind == file_.separator)) {
+  if (after != nullptr && (after == end || *after == file_.separator)) {
     if (!to_double_exactly(decimal, figure)) figure = to_double(decimal);
-    return behind;
+    return after;
   }
-  behind = end_of_field(begin, end);
-  figure = read_figure({begin, static_cast<std::size_t>(behind - begin)});
-  return behind;
+  after = end_of_field(begin, end);
+  figure = read_figure({begin, static_cast<std::size_t>(after - begin)});
+  return after;
 }
 
 double RowParser::read_figure(std::string_view field) {

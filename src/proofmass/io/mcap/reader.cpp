@@ -199,7 +199,7 @@ Result<std::unique_ptr<TableFile>> open(std::unique_ptr<PeekSource> source,
     if (spec.channels.size() > 1)
       spec.notes.push_back(
           {Severity::info, fmt::format("topic {} comes from {} publishers: "
-                                       "their messages stand one behind another",
+                                       "their messages follow one another",
                                        shown(spec.topic.channel.topic), spec.channels.size())});
   }
   return std::unique_ptr<TableFile>(

@@ -10,8 +10,8 @@
 namespace proofmass::io {
 namespace {
 
-/// Of constant length for any number of rows, so that it can be overwritten once that is known. The
-/// values begin at a multiple of 64 bytes, as the format requires, after a line end.
+/// Its length does not depend on the number of rows, so that it can be overwritten once that is
+/// known. The values begin at a multiple of 64 bytes, as the format requires, after a line end.
 std::string header_of(std::size_t rows, std::size_t columns) {
   std::string text =
       fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", rows, columns);

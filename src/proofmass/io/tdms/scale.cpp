@@ -181,7 +181,7 @@ Result<Scale> read_scale(const Properties& properties, std::uint32_t index) {
   if (kind == "Thermocouple") return read_thermocouple(of);
   if (kind == "Add") return Scale(Sum{1.0});
   if (kind == "Subtract") return Scale(Sum{-1.0});
-  if (kind == "AdvancedAPI") return Scale(Same{});
+  if (kind == "AdvancedAPI") return Scale(Identity{});
   return impossible(fmt::format("a scale of kind \"{}\"", kind));
 }
 

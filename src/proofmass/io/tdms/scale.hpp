@@ -73,10 +73,10 @@ struct Sum {
 };
 
 /// Identity scale.
-struct Same {};
+struct Identity {};
 
 using Scale =
-    std::variant<Linear, Polynomial, Lookup, Rtd, Strain, Thermistor, Thermocouple, Sum, Same>;
+    std::variant<Linear, Polynomial, Lookup, Rtd, Strain, Thermistor, Thermocouple, Sum, Identity>;
 
 /// Reads NI_Scale[index]_* of a channel.
 /// Errors: unsupported (an unknown kind; a missing or impossible property), a short message.

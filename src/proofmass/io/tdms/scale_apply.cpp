@@ -93,7 +93,7 @@ void apply_scale(const Scale& scale, View<double> left, View<double> right, std:
             out[i] = of.slope * left[i] + of.intercept;
           else if constexpr (std::is_same_v<Kind, Sum>)
             out[i] = right[i] + of.sign_of_left * left[i];
-          else if constexpr (std::is_same_v<Kind, Same>)
+          else if constexpr (std::is_same_v<Kind, Identity>)
             out[i] = left[i];
           else
             out[i] = scaled(of, left[i]);

@@ -26,7 +26,7 @@ class Scaling::Builder {
   Result<std::optional<Scaling>> run(std::uint32_t last) {
     const auto outcome = follow(last, 0);
     if (!outcome) return outcome.error();
-    if (outcome->is_source) made_.steps_.push_back({Same{}, *outcome, *outcome});
+    if (outcome->is_source) made_.steps_.push_back({Identity{}, *outcome, *outcome});
     made_.outcomes_.resize(made_.steps_.size());
     return std::optional(std::move(made_));
   }

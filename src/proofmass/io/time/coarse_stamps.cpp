@@ -115,8 +115,8 @@ double step_of_whole_stretches(View<double> stamps, double tick) {
   return step;
 }
 
-/// Of periods near `about`, in either direction up to `reach` of it, the one for which the stamps
-/// stay in a band of one tick best.
+/// The period for which the stamps stay best in a band of one tick, among those near `about`, up to
+/// a share `reach` away in either direction.
 double step_of_best_band(View<double> stamps, double tick, double about, double reach) {
   constexpr int each_way = 24;
   double best = about;

@@ -69,7 +69,7 @@ Fields point_fields(const FrictionPoint& point) {
           field::magnitude("std", point.std)};
 }
 
-// Of each innovation with the next.
+// Correlation of each innovation with the next.
 Fields correlation_fields(const MotorSolution& solution) {
   return {field::number(
               "winding", solution.angle_correlation,

@@ -28,7 +28,7 @@ bool is_plain(const Unit& unit) {
 // Unit to which a prefix can be added, and what NoiseScale appends to it.
 struct Base {
   double per_si = 1.0;
-  std::string symbol, behind;
+  std::string symbol, after;
   bool takes_prefix = true;
 };
 
@@ -69,18 +69,18 @@ Base base_of_rate(NoiseScale scale) {
 
 Base base_of(const Unit& unit, NoiseScale scale) {
   const bool integral = scale == NoiseScale::integral;
-  const std::string behind(per_what(scale));
+  const std::string after(per_what(scale));
   if (is_plain(unit)) {
     if (integral) return {1.0, "s", "", false};
-    return {1.0, behind.empty() ? "" : "1", behind, false};
+    return {1.0, after.empty() ? "" : "1", after, false};
   }
   if (is_acceleration(unit)) {
     if (integral) return {1.0, "m/s", "", true};
-    return {1.0 / standard_gravity_mps2, "g", behind, true};
+    return {1.0 / standard_gravity_mps2, "g", after, true};
   }
   if (is_angular_rate(unit)) return base_of_rate(scale);
   const bool takes_prefix = unit.quantity == Quantity::voltage && unit.to_si == 1.0;
-  return {1.0, print_unit(unit.symbol), behind, takes_prefix};
+  return {1.0, print_unit(unit.symbol), after, takes_prefix};
 }
 
 std::string unless_enough(const Coefficient& coefficient) {
@@ -276,7 +276,7 @@ std::string squared_unit(const Unit& unit, NoiseScale scale) {
 
 ShownUnit shown_unit(const Unit& unit, NoiseScale scale, double size) {
   const Base base = base_of(unit, scale);
-  const std::string plain = base.symbol + base.behind;
+  const std::string plain = base.symbol + base.after;
   const double micros = std::abs(size) * base.per_si * 1e6;
   // Instrument makers use parts per million; changed only if that is hard to read.
   if (!base.takes_prefix || micros >= 1e7) return {base.per_si, plain};

@@ -14,8 +14,8 @@ namespace proofmass::serve {
 class Session;
 class SocketSession;
 
-/// What the connections of a server have in common. Of the network's thread, but for `handler`,
-/// which runs on `workers`.
+/// What the connections of a server have in common. Used by the network's thread alone, but for
+/// `handler`, which runs on `workers`.
 struct SessionsShared {
   SessionsShared(ServerOptions given, Handler answers)
       : options(std::move(given)),

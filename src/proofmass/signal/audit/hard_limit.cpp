@@ -101,12 +101,12 @@ std::vector<Visit> visits_to(View<double> series, double edge) {
     first = end;
     if (length < window || visit.first < 1 + 2 * step || end + 2 * step >= series.size()) continue;
     const auto before = [&](std::size_t k) { return series[visit.first - 1 - k * step]; };
-    const auto behind = [&](std::size_t k) { return series[end + k * step]; };
+    const auto after = [&](std::size_t k) { return series[end + k * step]; };
     const auto steps = static_cast<double>(step);
     visit.rise = (before(0) - before(1)) / steps;
-    visit.fall = (behind(0) - behind(1)) / steps;
+    visit.fall = (after(0) - after(1)) / steps;
     visit.is_smooth = go_on(visit.rise, (before(1) - before(2)) / steps) &&
-                      go_on(visit.fall, (behind(1) - behind(2)) / steps);
+                      go_on(visit.fall, (after(1) - after(2)) / steps);
     if (std::isfinite(visit.rise + visit.fall)) out.push_back(visit);
   }
   return out;

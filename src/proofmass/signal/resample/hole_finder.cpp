@@ -56,8 +56,8 @@ void HoleFinder::decide_by_band(bool is_end, std::vector<Hole>& holes) {
     double missing = 0.0;
     if (!band_->holds(recent_[at])) {
       if (!is_end && at + StampBand::ahead > recent_.size()) return;
-      const std::size_t behind = std::min(StampBand::ahead, recent_.size() - at);
-      missing = band_->missing_before(View<double>(recent_).subspan(at, behind));
+      const std::size_t after = std::min(StampBand::ahead, recent_.size() - at);
+      missing = band_->missing_before(View<double>(recent_).subspan(at, after));
     }
     band_->take(recent_[at], missing);
     const double steps = (recent_[at] - recent_[at - 1]) * rate_hz_;

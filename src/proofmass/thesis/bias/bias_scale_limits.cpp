@@ -19,7 +19,7 @@ constexpr double g = standard_gravity_mps2, supply_v = 3.3;
 /// Dalhousie University, Halifax.
 constexpr sensor::Place halifax{.latitude_rad = 44.64 * rad_per_deg, .height_m = 30.0};
 
-// Of a mean over so long, in white noise.
+// Standard deviation of a mean over a dwell, in white noise.
 double mean_std_mps2(double dwell_s) {
   return adxl335.noise_density_mps2_rthz[0] / std::sqrt(2.0 * dwell_s);
 }

@@ -17,7 +17,7 @@ struct Half {
   double printed_settling_s;
 };
 
-/// Of the simulated acceleration sin ωt.
+/// ω of the simulated acceleration sin ωt.
 inline constexpr double simulated_radps = 1.0;
 
 inline const ShownUnit shown_seconds{"s"}, variance{"m²/s⁴"}, plain{};

@@ -113,7 +113,7 @@ Item pair_accel_item(const WheelStudy& study, const Pair& pair, const PairPaths&
   const std::string why = why_absent(turn);
   item.ours = fmt::format(
       "At {}: {}the motion makes {} at most, gravity where it is left in {}. {}", speed_words(turn),
-      why.empty() ? fmt::format("noise of the pair {} rms, {} behind the filter; ",
+      why.empty() ? fmt::format("noise of the pair {} rms, {} after the filter; ",
                                 said(raw, kind::milli_g), said(filtered, kind::milli_g))
                   : "",
       said(motion, kind::milli_g),

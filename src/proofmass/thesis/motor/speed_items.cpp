@@ -68,7 +68,7 @@ std::vector<const SpeedStudy*> studied(const WheelStudy& study) {
   return out;
 }
 
-/// Of one method, against the speed.
+/// Figures of one method against the speed.
 struct SpeedCurve {
   report::Curve mean;
   report::Band band;

@@ -81,7 +81,7 @@ bool holds(const std::optional<Interval95>& interval, double truth) {
          truth <= interval->upper_95.value_or(HUGE_VAL);
 }
 
-/// Of a1, a2 and T how many intervals hold what was simulated.
+/// How many of the intervals of a1, a2 and T contain the simulated value.
 int held(const DriftFit& fit, const sensor::WarmUp& truth) {
   return int{holds(fit.a1, truth.a1_mps2)} + int{holds(fit.a2, truth.a2_mps2)} +
          int{holds(fit.time_constant_s, truth.time_constant_s)};

@@ -33,7 +33,7 @@ std::optional<Uncertain> reduction(const SpeedStudy& speed, const Pick& a, const
   }
   const auto middle = median(parts);
   if (!middle) return std::nullopt;
-  // Of a median, from the spread: 1.2533 σ/√n.
+  // Standard deviation of a median: 1.2533 σ/√n.
   return Uncertain{*middle, 1.2533 * robust_std(parts).value_or(0.0) /
                                 std::sqrt(static_cast<double>(parts.size()))};
 }

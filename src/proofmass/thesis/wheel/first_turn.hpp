@@ -38,7 +38,7 @@ struct FirstTurn {
   std::vector<double> angle_rad = {}, speed_radps = {}, accel_radps2 = {};
   double start_speed_std_radps = 0.0;
   AngleEstimate filtered = {}, smoothed = {};  ///< of the wheel model
-  /// Of the smoothed angle less that at the first sample; empty where it is not worked out.
+  /// Standard deviation of the smoothed angle less that at the first sample; empty if not computed.
   std::vector<double> moved_std_rad = {};
   std::vector<double> smoothed_accel_radps2 = {};  ///< of the wheel model
   Uncertain mean_speed_radps = {};                 ///< by the wheel model, over the fastest turn

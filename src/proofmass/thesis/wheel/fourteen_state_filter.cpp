@@ -76,7 +76,7 @@ estimate::Gaussian<14> start_of(const std::array<Shared, 2>& shared) {
   return start;
 }
 
-/// Of the mean of the positions, of y1 and y2 or of all four.
+/// Error of the mean of the positions, of y1 and y2 or of all four.
 PathError error_of(const FirstTurn& turn, const Run& run, bool smoothed, bool all) {
   std::vector<double> path;
   for (const auto& step : run.steps) {

@@ -22,7 +22,7 @@ inline constexpr double rig_bandwidth_hz = 50.0;
 inline constexpr double rig_ripple = 0.02;  ///< of the speed, once a turn
 inline constexpr double ramp_s = 0.5;       ///< from rest to the speed
 
-/// Of one reading of the ADXL335 behind its filter.
+/// Noise of one sample of the ADXL335 after its filter, rms.
 [[nodiscard]] double rig_noise_mps2();
 
 struct RigRun {
