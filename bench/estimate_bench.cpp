@@ -22,7 +22,7 @@ namespace {
 using namespace proofmass;
 using namespace proofmass::estimate;
 
-constexpr std::size_t instants = 1'000'000;
+constexpr std::size_t epochs = 1'000'000;
 enum Reads { acceleration, position };
 
 LinearModel<4, 1> model_of(Reads reads) {
@@ -86,27 +86,27 @@ struct Textbook {
   }
 };
 
-void count_instants(benchmark::State& state) {
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(instants));
+void count_epochs(benchmark::State& state) {
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(epochs));
 }
 
 void reference_filter(benchmark::State& state) {
   const auto model = model_of(acceleration);
-  const auto z = record(acceleration, instants);
-  Textbook textbook(instants);
+  const auto z = record(acceleration, epochs);
+  Textbook textbook(epochs);
   for (auto _ : state) textbook.filter(model, z);
-  count_instants(state);
+  count_epochs(state);
 }
 
 void reference_filter_and_smoother(benchmark::State& state) {
   const auto model = model_of(acceleration);
-  const auto z = record(acceleration, instants);
-  Textbook textbook(instants);
+  const auto z = record(acceleration, epochs);
+  Textbook textbook(epochs);
   for (auto _ : state) {
     textbook.filter(model, z);
     textbook.smooth(model);
   }
-  count_instants(state);
+  count_epochs(state);
 }
 
 /// Ours, into the caller's memory; `missing`: one in this many measurements is missing.
@@ -115,16 +115,16 @@ void run(benchmark::State& state,
          const UniformOptions<4>& options,
          std::size_t missing = 0) {
   const auto model = model_of(reads);
-  auto z = record(reads, instants);
+  auto z = record(reads, epochs);
   for (std::size_t k = 0; missing > 0 && k < z.size(); k += missing) z[k] = std::nan("");
-  std::vector<Mat<4>> means(instants, Mat<4>::Zero());  // already allocated
-  std::vector<Symmetric<4>> covariances(options.covariances == Covariances::everywhere ? instants
+  std::vector<Mat<4>> means(epochs, Mat<4>::Zero());  // already allocated
+  std::vector<Symmetric<4>> covariances(options.covariances == Covariances::everywhere ? epochs
                                                                                        : 0);
   for (auto _ : state) {
     auto summary = run_uniform(model, prior(), z, options, {means, covariances});
     benchmark::DoNotOptimize(summary);
   }
-  count_instants(state);
+  count_epochs(state);
 }
 
 UniformOptions<4> options_of(bool smooth, Covariances covariances) {
@@ -227,7 +227,7 @@ void print_difference(Reads reads, const char* what) {
     of_cov = std::max(of_cov, cov.cwiseAbs().maxCoeff());
   }
   std::printf(
-      "%s read, %zu instants: smoothed means differ from the reference's by %.1e standard "
+      "%s read, %zu epochs: smoothed means differ from the reference's by %.1e standard "
       "deviations at most, covariances by %.1e (%s)\n",
       what, z.size(), of_mean, of_cov, ours.value().summary.passes().c_str());
 }

@@ -4,7 +4,7 @@
 // WheelModel over the same measurements; the largest difference of their smoothed angles is printed
 // to show that they compute the same result.
 //
-//   wheel_bench [most instants, 1e6 if not given]
+//   wheel_bench [most epochs, 1e6 if not given]
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ constexpr double noise_mps2 = 0.02, speed_radps = 1.5;
 
 /// Sensors at opposite positions of a wheel whose speed oscillates by a fifth.
 struct Recording {
-  std::vector<WheelInstant> instants;
+  std::vector<WheelEpoch> epochs;
   std::array<PlanarReadings, 2> sensors;
 };
 
@@ -50,7 +50,7 @@ Recording record(std::size_t count) {
       recording.sensors[s].variance_m2ps4.push_back(noise_mps2 * noise_mps2);
     }
     const auto row = static_cast<std::int64_t>(k);
-    recording.instants.push_back({k == 0 ? 0.0 : 1.0 / rate_hz, {row, row}});
+    recording.epochs.push_back({k == 0 ? 0.0 : 1.0 / rate_hz, {row, row}});
   }
   return recording;
 }
@@ -61,7 +61,7 @@ WheelModel<S> model_of(const Recording& recording) {
   model.gravity_mps2 = gravity_mps2;
   model.noise = {.jerk_psd = 0.1, .snap_psd = 0.1, .bias_walk_psd = 1e-9};
   model.places_held = true;  // as in the fit's last passes
-  model.instants = &recording.instants;
+  model.epochs = &recording.epochs;
   for (std::size_t s = 0; s < S; ++s) model.readings[s] = &recording.sensors[s];
   return model;
 }

@@ -196,7 +196,7 @@ class KalmanModel:
         array([1.5, 3. , 3. ])
         """
         if lag < 0:
-            raise ArgumentError(f"lag: expected 0 or more instants, got {lag}")
+            raise ArgumentError(f"lag: expected 0 or more epochs, got {lag}")
         return self._run("fixed_lag", lag, z, u, dt_s, progress)
 
     def loglikelihood(

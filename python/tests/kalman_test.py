@@ -76,7 +76,7 @@ def test_log_likelihood_is_that_of_the_readings_together():
     assert model.loglikelihood(z) == pytest.approx(expected, abs=1e-12)
 
 
-def test_uniform_passes_give_what_one_matrix_an_instant_gives():
+def test_uniform_passes_give_what_one_matrix_an_epoch_gives():
     z = np.random.default_rng(7).normal(size=3000)
     z[500:520] = np.nan
     F, H, Q = np.array([[1, 0.1], [0, 1]]), np.array([[1.0, 0.0]]), np.diag([1e-4, 1e-2])
@@ -95,7 +95,7 @@ def test_input_moves_the_state():
     assert found.mean[:, 0] == pytest.approx([0.0, 2.0, 4.0, -2.0])
 
 
-def test_irregular_steps_are_as_matrices_of_each_instant():
+def test_irregular_steps_are_as_matrices_of_each_epoch():
     dt = np.array([0.0, 0.1, 0.3, 0.1, 2.0])
     F = lambda step: np.array([[1, step], [0, 1]])  # noqa: E731
     Q = lambda step: 0.1 * np.array([[step**3 / 3, step**2 / 2], [step**2 / 2, step]])  # noqa: E731

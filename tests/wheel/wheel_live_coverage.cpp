@@ -13,7 +13,7 @@ namespace proofmass::wheel_world {
 namespace {
 
 constexpr double from_s = 6.0;
-constexpr int instants = 8;
+constexpr int epochs = 8;
 
 estimate::test::Stream stream_of(const Recorded& recorded, estimate::LiveWheelOptions& options) {
   estimate::test::Stream stream{recorded.sensors.front().time_s, {}};
@@ -54,7 +54,7 @@ LiveCoverage compare(const estimate::test::Followed& run, const Truth& truth, Ra
   const double started = rad_per_turn * std::round(off("angle", stamps_s[0], 0) / rad_per_turn);
   const auto begin =
       static_cast<std::size_t>(std::ranges::lower_bound(stamps_s, from_s) - stamps_s.begin());
-  for (int i = 0; i < instants && begin < stamps_s.size(); ++i) {
+  for (int i = 0; i < epochs && begin < stamps_s.size(); ++i) {
     const std::size_t row =
         begin +
         static_cast<std::size_t>(random.unit() * static_cast<double>(stamps_s.size() - begin));
@@ -90,7 +90,7 @@ LiveCoverage live_coverage_of(const Scenario& scenario,
     options.wheel = scenario.options(world);
     const estimate::test::Stream stream = stream_of(recorded, options);
     const auto run = estimate::test::followed(estimate::live_wheel(options).value(), stream, 20);
-    Random random(seed, "instants");
+    Random random(seed, "epochs");
     const LiveCoverage one = compare(run, recorded.truth, random);
     if (verbose) {
       std::printf("%s %llu: largest %.1f smoothed %.1f counted %.1f speed %.1f%s%s\n",

@@ -14,7 +14,7 @@ struct LiveCoverage {
   std::size_t silently = 0;  ///< of these, without a note and within three standard deviations
 };
 
-/// Coverage over recordings `first` … `first + count − 1`, at `instants` times of each from six
+/// Coverage over recordings `first` … `first + count − 1`, at `epochs` times of each from six
 /// seconds on.
 [[nodiscard]] LiveCoverage live_coverage_of(const Scenario& scenario,
                                             std::uint64_t first,

@@ -132,7 +132,8 @@ void add_output_flags(CLI::App& verb, OutputFlags& flags) {
   };
   add("--json", flags.json, "FILE",
       "write the results as JSON; - is standard output, without the text");
-  verb.add_flag("-q,--quiet", flags.quiet, "no warnings, notes or progress on stderr")->group("Output");
+  verb.add_flag("-q,--quiet", flags.quiet, "no warnings, notes or progress on stderr")
+      ->group("Output");
   verb.add_flag("-v,--verbose", flags.verbose, "show details found while reading")->group("Output");
   verb.add_flag("--strict", flags.strict, "exit with status 5 if the data are bad")
       ->group("Output");

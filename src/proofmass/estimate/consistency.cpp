@@ -166,12 +166,12 @@ void ConsistencyCheck::miss(std::size_t channel) {
 }
 
 void ConsistencyCheck::add_nis(double nis, std::size_t degrees) {
-  instants_.add_nis(nis, degrees);
+  epochs_.add_nis(nis, degrees);
 }
 
 Consistency ConsistencyCheck::judge() const {
   Consistency result;
-  InnovationTally together = instants_;
+  InnovationTally together = epochs_;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     together.join(channels_[i]);
     result.channels.push_back(channels_[i].judge(options_, channels_.size()));

@@ -151,7 +151,7 @@ class ConsistencyCheck {
  private:
   ConsistencyOptions options_;
   std::vector<InnovationTally> channels_;
-  InnovationTally instants_;
+  InnovationTally epochs_;
 };
 
 /// One channel's innovations over a recording; NaN where a measurement is missing.

@@ -43,24 +43,24 @@ LinearModel<3, 1> model_of(const GainStudyOptions& options) {
 
 GainStudy gain_study(const GainStudyOptions& options) {
   const LinearModel<3, 1> model = model_of(options);
-  GainStudy study{.options = options, .instants = {}};
+  GainStudy study{.options = options, .epochs = {}};
   const Limit limit = limit_of(options, model);
   study.limit = limit.gain;
   study.limit_variance_m2ps4 = limit.variance;
   Mat<3, 3> P = Mat<3, 3>::Identity() * options.prior_variance;
   const auto steps =
       static_cast<std::size_t>(std::floor(options.duration_s / options.step_s + 1e-9));
-  study.instants.reserve(steps + 1);
+  study.epochs.reserve(steps + 1);
   for (std::size_t k = 0; k <= steps; ++k) {
     if (k > 0) P = (model.F * P * model.F.transpose() + model.Q).eval();
     const double S = P(2, 2) + options.accel_variance_m2ps4;
     const Mat<3> gain = P.col(2) / S;
     P = (P - S * gain * gain.transpose()).eval();
-    GainInstant& instant = study.instants.emplace_back();
-    instant.t_s = static_cast<double>(k) * options.step_s;
+    GainEpoch& epoch = study.epochs.emplace_back();
+    epoch.t_s = static_cast<double>(k) * options.step_s;
     for (int i = 0; i < 3; ++i) {
-      instant.gain[static_cast<std::size_t>(i)] = gain(i);
-      instant.variance[static_cast<std::size_t>(i)] = P(i, i);
+      epoch.gain[static_cast<std::size_t>(i)] = gain(i);
+      epoch.variance[static_cast<std::size_t>(i)] = P(i, i);
     }
   }
   for (std::size_t i = 0; i < 3; ++i) study.settling_s[i] = settling_s(study, i, settled_within);
@@ -70,9 +70,9 @@ GainStudy gain_study(const GainStudyOptions& options) {
 std::optional<double> settling_s(const GainStudy& study, std::size_t state, double within) {
   const double limit = study.limit[state];
   std::optional<double> since;
-  for (const GainInstant& instant : study.instants) {
-    const bool near = std::abs(instant.gain[state] - limit) <= within * std::abs(limit);
-    if (near && !since) since = instant.t_s;
+  for (const GainEpoch& epoch : study.epochs) {
+    const bool near = std::abs(epoch.gain[state] - limit) <= within * std::abs(limit);
+    if (near && !since) since = epoch.t_s;
     if (!near) since.reset();
   }
   return since;

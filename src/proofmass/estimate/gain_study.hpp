@@ -19,7 +19,7 @@ struct GainStudyOptions {
 };
 
 /// One epoch, after its measurement.
-struct GainInstant {
+struct GainEpoch {
   double t_s = 0.0;
   std::array<double, 3> gain{};      ///< of position, velocity, acceleration
   std::array<double, 3> variance{};  ///< P⁺, diagonal
@@ -27,7 +27,7 @@ struct GainInstant {
 
 struct GainStudy {
   GainStudyOptions options;
-  std::vector<GainInstant> instants;
+  std::vector<GainEpoch> epochs;
   std::array<double, 3> limit{};      ///< limits of the gains
   double limit_variance_m2ps4 = 0.0;  ///< limit of the acceleration's variance
   /// For each gain: the time after which it stays within 2 % of its limit; absent if it does not

@@ -17,7 +17,7 @@ GainStudy thesis(double q, double R) {
 
 TEST(GainStudy, EndsAtTheLimitsThatItStates) {
   for (const auto& study : {thesis(4.0, 1.0), thesis(1.0, 4.0), thesis(1.0, 1.0)}) {
-    const GainInstant& last = study.instants.back();
+    const GainEpoch& last = study.epochs.back();
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(last.gain[i] / study.limit[i], 1.0, 1e-6) << i;
     EXPECT_NEAR(last.variance[2] / study.limit_variance_m2ps4, 1.0, 1e-9);
   }
@@ -56,8 +56,8 @@ TEST(GainStudy, AGainThatDoesNotGetThereHasNoSettlingTime) {
 
 TEST(GainStudy, WhatIsNotObservedGrows) {
   const GainStudy study = thesis(1.0, 1.0);
-  EXPECT_GT(study.instants.back().variance[0], 3.0 * study.instants[250].variance[0]);
-  EXPECT_GT(study.instants.back().variance[1], study.instants[250].variance[1]);
+  EXPECT_GT(study.epochs.back().variance[0], 3.0 * study.epochs[250].variance[0]);
+  EXPECT_GT(study.epochs.back().variance[1], study.epochs[250].variance[1]);
 }
 
 TEST(GainStudy, ALongerStepMakesTheGainLargerAndTheEstimateWorse) {

@@ -12,12 +12,12 @@
 #include "proofmass/estimate/tilt/live_filter.hpp"
 #include "proofmass/estimate/tilt/record.hpp"
 #include "proofmass/estimate/tilt/rest.hpp"
-#include "proofmass/estimate/wheel/live_instants.hpp"
+#include "proofmass/estimate/wheel/live_epochs.hpp"
 
 namespace proofmass::estimate {
 namespace {
 
-constexpr std::size_t fewest_instants = 10;
+constexpr std::size_t fewest_epochs = 10;
 
 std::vector<Channel> tilt_columns() {
   std::vector<Channel> columns;
@@ -46,49 +46,48 @@ class LiveTilt final : public LiveAnalysis {
   explicit LiveTilt(const LiveTiltOptions& options)
       : options_(options),
         spread_(options.tilt),
-        instants_(vectors_of(options), {options.rate_hz, options.most_rate_hz}) {}
+        epochs_(vectors_of(options), {options.rate_hz, options.most_rate_hz}) {}
 
   [[nodiscard]] const std::vector<Channel>& columns() const override { return columns_; }
 
   [[nodiscard]] Status add(const Block& samples, Rows& out) override {
     out.channels.resize(columns_.size());
-    return instants_.add(samples, [&](const LiveInstant& instant) { take(instant, out); });
+    return epochs_.add(samples, [&](const LiveEpoch& epoch) { take(epoch, out); });
   }
 
   [[nodiscard]] Status finish(Rows& out) override {
     out.channels.resize(columns_.size());
-    instants_.finish([&](const LiveInstant& instant) { take(instant, out); });
-    if (!bank_ && first_.size() >= fewest_instants) start(out);
+    epochs_.finish([&](const LiveEpoch& epoch) { take(epoch, out); });
+    if (!bank_ && first_.size() >= fewest_epochs) start(out);
     return Done{};
   }
 
   [[nodiscard]] std::vector<Note> take_notes() override {
-    for (Note& note : instants_.take_notes()) notes_.push_back(std::move(note));
+    for (Note& note : epochs_.take_notes()) notes_.push_back(std::move(note));
     return std::exchange(notes_, {});
   }
 
  private:
-  void take(const LiveInstant& instant, Rows& out) {
-    if (instant.anew) {
+  void take(const LiveEpoch& epoch, Rows& out) {
+    if (epoch.anew) {
       bank_.reset();
       first_.clear();
     }
     if (bank_) {
-      bank_->step(instant);
-      return give(instant.time_s, out);
+      bank_->step(epoch);
+      return give(epoch.time_s, out);
     }
-    first_.push_back(instant);
-    if (first_.size() >= fewest_instants &&
-        instant.time_s - first_.front().time_s >= options_.start_s)
+    first_.push_back(epoch);
+    if (first_.size() >= fewest_epochs && epoch.time_s - first_.front().time_s >= options_.start_s)
       start(out);
   }
 
   void start(Rows& out) {
     bank_.emplace(first_, options_);
     judge_force();
-    for (const LiveInstant& instant : first_) {
-      bank_->step(instant);
-      give(instant.time_s, out);
+    for (const LiveEpoch& epoch : first_) {
+      bank_->step(epoch);
+      give(epoch.time_s, out);
     }
     first_ = {};
   }
@@ -96,8 +95,8 @@ class LiveTilt final : public LiveAnalysis {
   /// Reports a force that is impossible for a body under gravity.
   void judge_force() {
     std::vector<double> norms;
-    for (const LiveInstant& instant : first_)
-      if (instant.has(0)) norms.push_back(instant.vectors[0].norm());
+    for (const LiveEpoch& epoch : first_)
+      if (epoch.has(0)) norms.push_back(epoch.vectors[0].norm());
     const double usual = median(norms).value_or(0.0), g = options_.tilt.gravity_mps2.value;
     if (usual > 0.5 * g && usual < 2.0 * g) return;
     notes_.push_back({Severity::bad, options_.accelerometer.name + ": the force has a median of " +
@@ -132,9 +131,9 @@ class LiveTilt final : public LiveAnalysis {
 
   LiveTiltOptions options_;
   ForceSpread spread_;
-  LiveInstants instants_;
+  LiveEpochs epochs_;
   std::vector<Channel> columns_ = tilt_columns();
-  std::vector<LiveInstant> first_;
+  std::vector<LiveEpoch> first_;
   std::optional<LiveTiltBank> bank_;
   std::vector<Note> notes_;
 };

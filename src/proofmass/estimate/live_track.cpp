@@ -14,7 +14,7 @@
 #include "proofmass/estimate/track/live_filter.hpp"
 #include "proofmass/estimate/track/live_rests.hpp"
 #include "proofmass/estimate/track/motion.hpp"
-#include "proofmass/estimate/wheel/live_instants.hpp"
+#include "proofmass/estimate/wheel/live_epochs.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -51,7 +51,7 @@ Status check(const LiveTrackOptions& options) {
   if (!sensible)
     return Error{Errc::invalid_argument,
                  "live track: a speed at rest of up to 1 m/s, a relative scale error of 0 to 1, a "
-                 "lag of 0 s to 10 s and 20 Hz to 10 kHz of instants are expected"};
+                 "lag of 0 s to 10 s and 20 Hz to 10 kHz of epochs are expected"};
   return options.axis ? check_live_axis(options.sensor, *options.axis) : Status(Done{});
 }
 
@@ -64,7 +64,7 @@ class LiveTrack final : public LiveAnalysis {
  public:
   explicit LiveTrack(const LiveTrackOptions& options)
       : options_(options),
-        instants_({{options.sensor}}, {options.rate_hz, options.most_rate_hz}),
+        epochs_({{options.sensor}}, {options.rate_hz, options.most_rate_hz}),
         rests_(options.sensor) {
     if (options.axis) axis_ = unit_vector(*options.axis);
   }
@@ -73,28 +73,28 @@ class LiveTrack final : public LiveAnalysis {
 
   [[nodiscard]] Status add(const Block& samples, Rows& out) override {
     out.channels.resize(columns_.size());
-    return instants_.add(samples, [&](const LiveInstant& instant) { take(instant, out); });
+    return epochs_.add(samples, [&](const LiveEpoch& epoch) { take(epoch, out); });
   }
 
   [[nodiscard]] Status finish(Rows& out) override {
     out.channels.resize(columns_.size());
-    instants_.finish([&](const LiveInstant& instant) { take(instant, out); });
+    epochs_.finish([&](const LiveEpoch& epoch) { take(epoch, out); });
     rests_.finish([&](const LiveReading& reading) { follow(reading, out); });
     if (!gathered_.empty()) run_gathered(false, out);
     return Done{};
   }
 
   [[nodiscard]] std::vector<Note> take_notes() override {
-    for (Note& note : instants_.take_notes()) notes_.push_back(std::move(note));
+    for (Note& note : epochs_.take_notes()) notes_.push_back(std::move(note));
     for (Note& note : rests_.take_notes()) notes_.push_back(std::move(note));
     return std::exchange(notes_, {});
   }
 
  private:
-  void take(const LiveInstant& instant, Rows& out) {
-    if (instant.anew) start_anew();
-    if (!began_s_) began_s_ = instant.time_s;
-    rests_.add(instant, [&](const LiveReading& reading) { follow(reading, out); });
+  void take(const LiveEpoch& epoch, Rows& out) {
+    if (epoch.anew) start_anew();
+    if (!began_s_) began_s_ = epoch.time_s;
+    rests_.add(epoch, [&](const LiveReading& reading) { follow(reading, out); });
   }
 
   /// The clock was set back, as reported by the epochs.
@@ -211,7 +211,7 @@ class LiveTrack final : public LiveAnalysis {
         .longest_step_s = gap_steps * step_s,
         .lag = static_cast<std::size_t>(std::lround(options_.lag_s * rate_hz))};
     const double level = axis_->dot(level_->accel_mps2);
-    filter_.emplace(setup, LiveTrackInstant{level_->time_s, level, true},
+    filter_.emplace(setup, LiveTrackSample{level_->time_s, level, true},
                     LiveLevel{level, squares.dot(level_variance_)});
   }
 
@@ -296,7 +296,7 @@ class LiveTrack final : public LiveAnalysis {
   }
 
   LiveTrackOptions options_;
-  LiveInstants instants_;
+  LiveEpochs epochs_;
   LiveTrackRests rests_;
   std::vector<Channel> columns_ = track_columns();
   std::optional<double> began_s_;

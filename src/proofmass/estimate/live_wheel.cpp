@@ -10,8 +10,8 @@
 
 #include "proofmass/estimate/live_columns.hpp"
 #include "proofmass/estimate/wheel/joint_fit.hpp"
+#include "proofmass/estimate/wheel/live_epochs.hpp"
 #include "proofmass/estimate/wheel/live_filter.hpp"
-#include "proofmass/estimate/wheel/live_instants.hpp"
 #include "proofmass/estimate/wheel/live_start.hpp"
 
 namespace proofmass::estimate {
@@ -68,40 +68,40 @@ class LiveWheel final : public LiveAnalysis {
  public:
   explicit LiveWheel(const LiveWheelOptions& options)
       : options_(options),
-        instants_(vectors_of(options), {options.rate_hz, options.most_rate_hz}),
+        epochs_(vectors_of(options), {options.rate_hz, options.most_rate_hz}),
         pause_s_(options.start_s) {}
 
   [[nodiscard]] const std::vector<Channel>& columns() const override { return columns_; }
 
   [[nodiscard]] Status add(const Block& samples, Rows& out) override {
     out.channels.resize(columns_.size());
-    return instants_.add(samples, [&](const LiveInstant& instant) { take(instant, out); });
+    return epochs_.add(samples, [&](const LiveEpoch& epoch) { take(epoch, out); });
   }
 
   [[nodiscard]] Status finish(Rows& out) override {
     out.channels.resize(columns_.size());
-    instants_.finish([&](const LiveInstant& instant) { take(instant, out); });
+    epochs_.finish([&](const LiveEpoch& epoch) { take(epoch, out); });
     if (!search_.valid() && !filter_ && !gathered_.empty()) look();
     if (search_.valid()) adopt(out);
     return Done{};
   }
 
   [[nodiscard]] std::vector<Note> take_notes() override {
-    for (Note& note : instants_.take_notes()) notes_.push_back(std::move(note));
+    for (Note& note : epochs_.take_notes()) notes_.push_back(std::move(note));
     return std::exchange(notes_, {});
   }
 
  private:
-  void take(const LiveInstant& instant, Rows& out) {
-    if (instant.anew) {
+  void take(const LiveEpoch& epoch, Rows& out) {
+    if (epoch.anew) {
       last_ = {};
       resume_s_ = -std::numeric_limits<double>::infinity();
       forget();
     }
-    if (filter_) follow(instant, out);
-    if (gathering_ && instant.time_s >= resume_s_) gather(instant);
+    if (filter_) follow(epoch, out);
+    if (gathering_ && epoch.time_s >= resume_s_) gather(epoch);
     if (search_.valid()) {
-      if (instant.time_s >= adopt_s_) adopt(out);
+      if (epoch.time_s >= adopt_s_) adopt(out);
     } else if (gathering_ && !gathered_.empty() && is_due()) {
       look();
     }
@@ -116,19 +116,19 @@ class LiveWheel final : public LiveAnalysis {
     saw_turn_ = false;
   }
 
-  void follow(const LiveInstant& instant, Rows& out) {
-    filter_->step(instant);
-    if (!filter_->is_lost()) return give(instant.time_s, out);
-    notes_.push_back({Severity::warning, "the wheel was lost at " + at_second(instant.time_s) +
+  void follow(const LiveEpoch& epoch, Rows& out) {
+    filter_->step(epoch);
+    if (!filter_->is_lost()) return give(epoch.time_s, out);
+    notes_.push_back({Severity::warning, "the wheel was lost at " + at_second(epoch.time_s) +
                                              " s and is searched again: turns may be lost"});
     turns_std_rad_ += rad_per_turn;
     forget();
   }
 
-  void gather(const LiveInstant& instant) {
-    gathered_.push_back(instant);
+  void gather(const LiveEpoch& epoch) {
+    gathered_.push_back(epoch);
     given_rad_.push_back(filter_ ? *last_.angle_rad : std::numeric_limits<double>::quiet_NaN());
-    const bool is_long = instant.time_s - gathered_.front().time_s >= longest_start_s;
+    const bool is_long = epoch.time_s - gathered_.front().time_s >= longest_start_s;
     if (!filter_ || search_.valid() || !is_long) return;
     const auto half = static_cast<std::ptrdiff_t>(gathered_.size() / 2);
     gathered_.erase(gathered_.begin(), gathered_.begin() + half);
@@ -271,10 +271,10 @@ class LiveWheel final : public LiveAnalysis {
   }
 
   LiveWheelOptions options_;
-  LiveInstants instants_;
+  LiveEpochs epochs_;
   std::vector<Channel> columns_ = wheel_columns();
   std::optional<LiveWheelFilter<S>> filter_;
-  std::vector<LiveInstant> gathered_;  ///< for the search
+  std::vector<LiveEpoch> gathered_;  ///< for the search
   std::future<Result<LiveWheelStart>> search_;
   double adopt_s_ = 0.0;           ///< when the search result is used
   std::vector<double> given_rad_;  ///< the angle given for each of them; NaN: none yet

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "proofmass/estimate/tilt/instants.hpp"
+#include "proofmass/estimate/tilt/epochs.hpp"
 #include "proofmass/estimate/tilt/motion.hpp"
 #include "proofmass/estimate/tilt/record.hpp"
 #include "proofmass/estimate/tilt/rest_search.hpp"
@@ -13,13 +13,13 @@ namespace {
 
 // A moving base, by filter and smoother.
 void follow(const TiltRecord& record, const TiltOptions& options, TiltSolution& solution) {
-  TiltInstants instants = instants_of(record, solution);
-  if (const std::size_t held = drop_held(instants); held > 0)
+  TiltEpochs epochs = epochs_of(record, solution);
+  if (const std::size_t held = drop_held(epochs); held > 0)
     solution.notes.push_back(
         {Severity::warning, std::to_string(held) + " of " + std::to_string(solution.samples) +
                                 " rows repeat the previous one: the sensor is slower than the "
                                 "recording, and each measurement counts once"});
-  const TiltKnown known = known_of(record, options, solution, instants);
+  const TiltKnown known = known_of(record, options, solution, epochs);
   if (options.progress) options.progress("fitting the noise", 0.0);
   const bool gyroscope = has_rates(record);
   Mat<3> rate_bias = Mat<3>::Zero();
@@ -29,12 +29,12 @@ void follow(const TiltRecord& record, const TiltOptions& options, TiltSolution& 
     const double mean_memory_s = !gyroscope   ? without_s
                                  : round == 0 ? bias_unknown_s
                                               : bias_known_s;
-    const BaseAccel accel = base_accel(instants, rate_bias, known, mean_memory_s);
-    instants.accel_cov_m2ps4 = accel.cov_m2ps4;
-    solution.motion = fit_tilt_motion(instants, known, accel, gyroscope);
-    if (gyroscope) rate_bias = rate_bias_of(instants, known, *solution.motion);
+    const BaseAccel accel = base_accel(epochs, rate_bias, known, mean_memory_s);
+    epochs.accel_cov_m2ps4 = accel.cov_m2ps4;
+    solution.motion = fit_tilt_motion(epochs, known, accel, gyroscope);
+    if (gyroscope) rate_bias = rate_bias_of(epochs, known, *solution.motion);
   }
-  run_tilt(instants, known, options, solution);
+  run_tilt(epochs, known, options, solution);
   // A limitation that no residual reveals, see docs/methods/tilt.md.
   solution.notes.push_back(
       {Severity::info, std::string("a level acceleration that lasts longer than ") +

@@ -387,13 +387,13 @@ TEST(Tilt, SaysWhyItCannot) {
 }
 
 TEST(TiltModel, HasTheJacobianOfItsMotion) {
-  TiltInstants instants{.step_s = {0.0, 0.02},
-                        .force_mps2 = {force_at(0.2, 0.1), force_at(0.2, 0.1)},
-                        .rate_radps = {{0.3, -0.8, 0.5}, {0.3, -0.8, 0.5}},
-                        .rate_at_radps = {{0.3, -0.8, 0.5}, {0.3, -0.8, 0.5}},
-                        .resting = {0, 0},
-                        .accel_cov_m2ps4 = {Mat<3, 3>::Identity(), Mat<3, 3>::Identity()}};
-  const TiltModel model(instants, {}, {.gyroscope = true, .drive = 1e-3, .accel_time_s = 0.1});
+  TiltEpochs epochs{.step_s = {0.0, 0.02},
+                    .force_mps2 = {force_at(0.2, 0.1), force_at(0.2, 0.1)},
+                    .rate_radps = {{0.3, -0.8, 0.5}, {0.3, -0.8, 0.5}},
+                    .rate_at_radps = {{0.3, -0.8, 0.5}, {0.3, -0.8, 0.5}},
+                    .resting = {0, 0},
+                    .accel_cov_m2ps4 = {Mat<3, 3>::Identity(), Mat<3, 3>::Identity()}};
+  const TiltModel model(epochs, {}, {.gyroscope = true, .drive = 1e-3, .accel_time_s = 0.1});
   Mat<9> x;
   x << force_at(0.2, 0.1), 0.3, -0.4, 0.2, 0.02, -0.01, 0.03;
   const Mat<9, 9> F = model.transition(x, 1).F;

@@ -281,8 +281,8 @@ Status check_radius(const WheelFit& fit, const WheelOptions& options, WheelSolut
 /// Per sample and axis, at rest or in the quietest part.
 double noise_mps2(const WheelReadings& readings, std::size_t sensor) {
   std::vector<double> variance;
-  for (const WheelInstant& instant : readings.instants)
-    if (const std::int64_t row = instant.row[sensor]; row != WheelInstant::no_row)
+  for (const WheelEpoch& epoch : readings.epochs)
+    if (const std::int64_t row = epoch.row[sensor]; row != WheelEpoch::no_row)
       variance.push_back(readings.sensors[sensor].variance_m2ps4[static_cast<std::size_t>(row)]);
   return std::sqrt(*quantile(variance, 0.05));
 }

@@ -44,8 +44,8 @@ class FamilyTest {
 };
 
 /// For each p-value the smallest q with which it is significant, where at most a share q of the
-/// significant ones is expected to be so by chance. Source: Y. Benjamini, Y. Hochberg, J. R. Stat. Soc. B 57
-/// (1995) 289.
+/// significant ones is expected to be so by chance. Source: Y. Benjamini, Y. Hochberg, J. R. Stat.
+/// Soc. B 57 (1995) 289.
 [[nodiscard]] std::vector<double> adjusted_p(const std::vector<double>& p);
 
 }  // namespace proofmass::fleet

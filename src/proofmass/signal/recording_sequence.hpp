@@ -7,9 +7,9 @@
 
 namespace proofmass::signal {
 
-/// Places recordings of one sensor one after another on one even grid, as if they were one recording
-/// with gaps. Each is placed by its start on a clock common to all, so that rounding does not
-/// accumulate. One that starts up to a second before the end of the previous one follows it
+/// Places recordings of one sensor one after another on one even grid, as if they were one
+/// recording with gaps. Each is placed by its start on a clock common to all, so that rounding does
+/// not accumulate. One that starts up to a second before the end of the previous one follows it
 /// directly: the start of a file is often known to the second only. Gaps may be bounded: a week
 /// between two hours need not be laid out sample by sample.
 class RecordingSequence {

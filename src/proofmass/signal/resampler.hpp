@@ -65,11 +65,11 @@ class Resampler {
 
   ResampleMethod method_ = ResampleMethod::sinc;
   TimeGrid to_;
-  EvenGrid own_;                           ///< grid of the recording
-  std::vector<double> times_;              ///< times of the samples
+  EvenGrid own_;                          ///< grid of the recording
+  std::vector<double> times_;             ///< times of the samples
   std::vector<std::size_t> first_after_;  ///< samples preceded by missing ones
-  bool is_even_ = true;                    ///< the samples lie on their own grid
-  std::vector<Place> places_;              ///< positions of the new times among the samples
+  bool is_even_ = true;                   ///< the samples lie on their own grid
+  std::vector<Place> places_;             ///< positions of the new times among the samples
   std::vector<Place> own_places_;  ///< positions of the own grid's times, if the samples are uneven
 };
 

@@ -123,9 +123,9 @@ TEST(GainItems, BelowTenComesTheVarianceWithTheRThatIsNamedJustAfterTwentyReadin
   auto options = slow_filter;
   options.accel_variance_m2ps4 = ours("figure 4.3", "r_for_twenty");
   const auto study = gain_study(options);
-  EXPECT_GT(study.instants[18].variance[2], 10.0);
-  EXPECT_LE(study.instants[19].variance[2], 10.0);
-  EXPECT_NEAR(study.instants[19].variance[2], 10.0, 0.02);
+  EXPECT_GT(study.epochs[18].variance[2], 10.0);
+  EXPECT_LE(study.epochs[19].variance[2], 10.0);
+  EXPECT_NEAR(study.epochs[19].variance[2], 10.0, 0.02);
   EXPECT_EQ(ours("figure 4.3", "readings_to_ten_slow"), 1.0);
 }
 

@@ -59,8 +59,7 @@ double mean_of_neighbours(View<double> values, std::size_t gap, std::size_t afte
     ++count;
   };
   for (std::size_t k = gap - std::min(neighbours, gap); k < gap; ++k) take(values[k]);
-  for (std::size_t k = after; k < std::min(values.size(), after + neighbours); ++k)
-    take(values[k]);
+  for (std::size_t k = after; k < std::min(values.size(), after + neighbours); ++k) take(values[k]);
   return sum / static_cast<double>(count);
 }
 
@@ -81,8 +80,9 @@ std::vector<double> filled(View<double> means, double& share) {
   return values;
 }
 
-// Ordinate of a ramp of 1 unit/s: √(2/n) step Σ (j + ½) cos((j + ½) π k/n) and √step for the density, the sum being
-// the derivative of Σ sin((j + ½) θ) = (1 − cos nθ) / (2 sin(θ/2)) at θ = π k/n. None for even k.
+// Ordinate of a ramp of 1 unit/s: √(2/n) step Σ (j + ½) cos((j + ½) π k/n) and √step for the
+// density, the sum being the derivative of Σ sin((j + ½) θ) = (1 − cos nθ) / (2 sin(θ/2)) at θ = π
+// k/n. None for even k.
 double ramp_amplitude(std::size_t k, std::size_t n, double step_s) {
   if (k % 2 == 0) return 0.0;
   const double half = 0.5 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);

@@ -106,14 +106,14 @@ TEST(MatrixSeries, SmoothsTimeVaryingModelsAsTheSmootherOfFixedSize) {
 }
 
 TEST(MatrixSeries, FixedLagIsTheSmootherOfTheReadingsSoFar) {
-  constexpr std::size_t lag = 4, instant = 20;
-  Drawn run(60), part(instant + lag + 1);
+  constexpr std::size_t lag = 4, epoch = 20;
+  Drawn run(60), part(epoch + lag + 1);
   ASSERT_TRUE(run_matrices(run.series(), MatrixPass::fixed_lag, lag, run.output()));
   ASSERT_TRUE(run_matrices(part.series(), MatrixPass::smooth, 0, part.output()));
   for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(run.mean[instant * 3 + i], part.mean[instant * 3 + i], 1e-12);
+    EXPECT_NEAR(run.mean[epoch * 3 + i], part.mean[epoch * 3 + i], 1e-12);
   for (std::size_t i = 0; i < 9; ++i)
-    EXPECT_NEAR(run.cov[instant * 9 + i], part.cov[instant * 9 + i], 1e-12);
+    EXPECT_NEAR(run.cov[epoch * 9 + i], part.cov[epoch * 9 + i], 1e-12);
 }
 
 TEST(MatrixSeries, CorrelatedChannelsCountAsTheirDecorrelatedOnes) {

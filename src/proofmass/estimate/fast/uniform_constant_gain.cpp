@@ -52,7 +52,7 @@ void write_constant_gain(Work<N>& work, const Chunk<N>& chunk) {
   if (out.innovation.empty()) return;
   for (std::size_t t = 0; t < lane_length; ++t)
     for (int lane = 0; lane < lanes; ++lane)
-      out.innovation[instant(chunk.first, lane, t)] =
+      out.innovation[epoch(chunk.first, lane, t)] =
           work.lane_means[t].y_S[lane] / steady.gain.per_S;
 }
 
@@ -69,7 +69,7 @@ bool filter_constant_gain(Work<N>& work, const Chunk<N>& chunk, State<N>& state)
   // added.
   for (int l = 0; l < lanes; ++l) {
     set_lane<N>(x, l, begin);
-    if (work.options.smooth) work.output.means[instant(chunk.first, l, 0)] = x;
+    if (work.options.smooth) work.output.means[epoch(chunk.first, l, 0)] = x;
     const Mat<N> own = lane_of<N>(end, l);
     x = l == 0 ? own : Mat<N>(own + steady.lane_decay * x);
   }
@@ -85,7 +85,7 @@ void smooth_constant_gain(Work<N>& work, const Chunk<N>& chunk, Later<N>& later)
   const Steady<N>& steady = *work.steady;
   LaneNumbers x[N], l[N] = {};
   for (int lane = 0; lane < lanes; ++lane)
-    set_lane<N>(work.output.means[instant(chunk.first, lane, 0)], lane, x);
+    set_lane<N>(work.output.means[epoch(chunk.first, lane, 0)], lane, x);
   filter_means(work, chunk, false, x);
   Mat<N> after = column(later.l);
   set_lane<N>(after, lanes - 1, l);

@@ -76,7 +76,7 @@ struct Work {
 };
 
 /// Where lane l's epoch t stands.
-[[nodiscard]] inline std::size_t instant(std::size_t first, int lane, std::size_t t) {
+[[nodiscard]] inline std::size_t epoch(std::size_t first, int lane, std::size_t t) {
   return first + static_cast<std::size_t>(lane) * lane_length + t;
 }
 
@@ -111,7 +111,7 @@ template <int Count, Write write, class T, class Numbers>
 void write_pairs(std::size_t first, std::span<T> out, const Numbers& numbers) {
   for (std::size_t t = 0; t < lane_length; t += run_length)
     for (int lane = 0; lane < lanes; lane += 2) {
-      T* one = &out[instant(first, lane, t)];
+      T* one = &out[epoch(first, lane, t)];
       T* other = one + lane_length;
       for (std::size_t u = 0; u < run_length; ++u)
         part<Count, write>(numbers(t + u), lane, numbers_of(one[u]), numbers_of(other[u]));

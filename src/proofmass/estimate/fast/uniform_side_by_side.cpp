@@ -75,7 +75,7 @@ void write_innovations(const Work<N>& work, const Chunk<N>& chunk) {
   for (std::size_t t = 0; t < lane_length; ++t)
     for (int lane = 0; lane < lanes; ++lane) {
       const LaneRow<N>& row = work.lane_rows[t];
-      const std::size_t k = instant(chunk.first, lane, t);
+      const std::size_t k = epoch(chunk.first, lane, t);
       if (!work.output.innovation.empty())
         work.output.innovation[k] = row.y_S[lane] / row.per_S[lane];
       if (!work.output.innovation_variance.empty())
@@ -134,7 +134,7 @@ bool filter_side_by_side(Work<N>& work, const Chunk<N>& chunk, State<N>& state) 
   Mat<N> x = column(chunk.start.x);
   for (int l = 0; l < lanes; ++l) {
     set_lane<N>(x, l, begin);
-    if (work.options.smooth) work.output.means[instant(chunk.first, l, 0)] = x;
+    if (work.options.smooth) work.output.means[epoch(chunk.first, l, 0)] = x;
     const Mat<N> end = lane_of<N>(lane.x, l);
     x = l == 0 ? end : Mat<N>(end + leaps[static_cast<std::size_t>(l)].Phi * x);
   }
@@ -153,7 +153,7 @@ void smooth_side_by_side(Work<N>& work, const Chunk<N>& chunk, Later<N>& later) 
   LaneState<N> lane{};
   const Leaps<N> leaps = leap_through(work, chunk, lane);
   for (int l = 0; l < lanes; ++l)
-    set_lane<N>(work.output.means[instant(chunk.first, l, 0)], l, lane.x);
+    set_lane<N>(work.output.means[epoch(chunk.first, l, 0)], l, lane.x);
   (void)filter_lanes(work, chunk, lane, true);
   add_score(work);
 

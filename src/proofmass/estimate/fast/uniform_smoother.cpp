@@ -15,7 +15,7 @@ bool lay_out(Work<N>& work, const Chunk<N>& chunk, std::size_t t) {
   work.lane_z.resize(chunk_length);
   Pair none{};  // 0 as long as all are finite
   for (int lane = 0; lane < lanes; lane += 2) {
-    const double* z = work.z.data() + instant(chunk.first, lane, t);
+    const double* z = work.z.data() + epoch(chunk.first, lane, t);
     double* out = work.lane_z.data() + t * lanes + static_cast<std::size_t>(lane);
     __builtin_prefetch(z + 2 * together);
     __builtin_prefetch(z + 2 * together + lane_length);
@@ -54,7 +54,7 @@ Status check_readings(const Work<N>& work, const Chunk<N>& chunk) {
   const auto infinite = std::ranges::find_if(z, [](double reading) { return std::isinf(reading); });
   if (infinite == z.end()) return Done{};
   return Error{Errc::not_finite, "the measurement is infinite; use NaN for a missing one"}.at(
-      "instant " + std::to_string(chunk.first + static_cast<std::size_t>(infinite - z.begin())));
+      "epoch " + std::to_string(chunk.first + static_cast<std::size_t>(infinite - z.begin())));
 }
 
 /// Filters a chunk by the fastest applicable pass, and records it.

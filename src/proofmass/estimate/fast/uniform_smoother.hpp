@@ -62,7 +62,7 @@ struct UniformSummary {
   std::size_t one_by_one = 0, side_by_side = 0, constant_gain = 0;
 
   [[nodiscard]] std::string passes() const {
-    return std::to_string(one_by_one) + " instants one by one, " + std::to_string(side_by_side) +
+    return std::to_string(one_by_one) + " epochs one by one, " + std::to_string(side_by_side) +
            " side by side, " + std::to_string(constant_gain) + " at constant gain";
   }
 };

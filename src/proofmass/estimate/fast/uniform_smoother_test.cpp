@@ -139,9 +139,8 @@ void expect_equal_to_any_record(const LinearModel<N, 1>& model,
       const auto run =
           smooth_uniform<N>(model, prior<N>(), std::span(z), options<N>(kind, smooth)).value();
       const Apart off = apart(run, expected, smooth, kind != Covariances::none);
-      const auto where = ::testing::Message()
-                         << N << " states, " << z.size() << " instants, smooth " << smooth << ", "
-                         << run.summary.passes();
+      const auto where = ::testing::Message() << N << " states, " << z.size() << " epochs, smooth "
+                                              << smooth << ", " << run.summary.passes();
       EXPECT_LT(off.means, means) << where;
       EXPECT_LT(off.covs, covs) << where;
       EXPECT_EQ(run.summary.readings, expected.readings) << where;
@@ -310,7 +309,7 @@ TEST(UniformSmoother, SaysWhatItCannotUse) {
   const auto infinite = smooth_uniform<3>(three, prior<3>(), std::span(z));
   ASSERT_FALSE(infinite.has_value());
   EXPECT_EQ(infinite.error().code, Errc::not_finite);
-  EXPECT_TRUE(infinite.error().message.starts_with("instant 5000: ")) << infinite.error().message;
+  EXPECT_TRUE(infinite.error().message.starts_with("epoch 5000: ")) << infinite.error().message;
 
   auto worthless = three;
   worthless.R(0) = 0.0;

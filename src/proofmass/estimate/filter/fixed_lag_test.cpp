@@ -48,7 +48,7 @@ TEST(FixedLag, EveryStateInTheWindowIsTheFixedIntervalSmoothersOfTheReadingsSoFa
   }
 }
 
-TEST(FixedLag, ARunGivesEachInstantOnceWithTheLastOnesGivenEverything) {
+TEST(FixedLag, ARunGivesEachEpochOnceWithTheLastOnesGivenEverything) {
   const std::size_t count = 40;
   const auto series = test::uneven_series(count);
   const FilterState<3> prior{test::oscillator_prior()};

@@ -99,7 +99,7 @@ struct Gate {
 template <int N>
 struct FilterState {
   Gaussian<N> x;
-  int instants_gated = 0;  ///< consecutive, up to now
+  int epochs_gated = 0;  ///< consecutive, up to now
 };
 
 /// x̂[k|k−1] from x̂[k−1|k−1].
@@ -183,9 +183,9 @@ void advance(const Model& model,
   } else {
     step.F.setIdentity();
   }
-  if (state.instants_gated >= gate.patience) {
+  if (state.epochs_gated >= gate.patience) {
     model.reopen(state.x, k);
-    state.instants_gated = 0;
+    state.epochs_gated = 0;
   }
   Readings<N, Model::channels> readings;
   const Mat<N> linearised_at = state.x.mean;
@@ -198,7 +198,7 @@ void advance(const Model& model,
         correct(state.x, reading, gate, active_states(model));
     any_used = any_used || (update.used && i < readings.count - readings.constraints);
   }
-  if (readings.count > 0) state.instants_gated = any_used ? 0 : state.instants_gated + 1;
+  if (readings.count > 0) state.epochs_gated = any_used ? 0 : state.epochs_gated + 1;
   step.count = readings.count;
   step.filtered = state.x;
 }

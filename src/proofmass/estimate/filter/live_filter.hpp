@@ -41,14 +41,14 @@ class LiveFilter {
                    "a measurement or input is infinite; use NaN for a missing one"};
     if (!(model.R.array() > 0.0).all())
       return Error{Errc::not_positive_definite, "a channel's variance in R is not positive"};
-    advance(Instant{model, epoch, reopened_}, instants_ == 0 ? 0 : 1, gate_, state_, step_);
-    ++instants_;
+    advance(EpochModel{model, epoch, reopened_}, epochs_ == 0 ? 0 : 1, gate_, state_, step_);
+    ++epochs_;
     judge(epoch);
     if (window_.lag() > 0) window_.push(step_);
     return Done{};
   }
 
-  [[nodiscard]] std::size_t instants() const { return instants_; }
+  [[nodiscard]] std::size_t epochs() const { return epochs_; }
   /// The state at the last epoch given all measurements so far; the prior before the first.
   [[nodiscard]] const Gaussian<N>& state() const { return step_.filtered; }
   /// The state `lag` epochs before the last given all measurements so far; the oldest available in
@@ -72,7 +72,7 @@ class LiveFilter {
 
  private:
   /// One epoch as a StateSpaceModel; 0 is the first and 1 any later.
-  struct Instant {
+  struct EpochModel {
     static constexpr int states = N, moving = N, channels = M;
     const LinearModel<N, M, U>& model;
     const Epoch<M, U>& epoch;
@@ -125,7 +125,7 @@ class LiveFilter {
   Mat<M> innovation_, innovation_variance_;
   double nis_ = 0.0, log_likelihood_ = 0.0;
   int readings_ = 0;
-  std::size_t instants_ = 0;
+  std::size_t epochs_ = 0;
 };
 
 }  // namespace proofmass::estimate

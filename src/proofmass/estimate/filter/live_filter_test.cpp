@@ -35,7 +35,7 @@ TEST(LiveFilter, GivesTheBatchFiltersNumbersToTheLastBit) {
       ASSERT_EQ(live.readings(), expected.readings);
       nis += live.nis();
     }
-    EXPECT_EQ(live.instants(), 300U);
+    EXPECT_EQ(live.epochs(), 300U);
     EXPECT_EQ(live.log_likelihood(), run.log_likelihood);
     EXPECT_EQ(nis, run.nis);
   }
@@ -99,11 +99,11 @@ TEST(LiveFilter, IsUnchangedAfterUnusableInput) {
   EXPECT_EQ(variance.error().code, Errc::not_positive_definite);
   EXPECT_EQ(live.state().mean, before.mean);
   EXPECT_EQ(live.state().cov, before.cov);
-  EXPECT_EQ(live.instants(), 1U);
+  EXPECT_EQ(live.epochs(), 1U);
   EXPECT_EQ(live.window().size(), 1U);
 }
 
-TEST(LiveFilter, AnInstantWithoutReadingsIsAPrediction) {
+TEST(LiveFilter, AnEpochWithoutReadingsIsAPrediction) {
   const auto model = test::driven_oscillator(0.4);
   Live live(test::oscillator_prior());
   ASSERT_TRUE(live.step(model, test::uneven_epochs(1)[0]));

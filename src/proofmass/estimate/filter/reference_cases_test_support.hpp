@@ -20,7 +20,7 @@ namespace proofmass::estimate::test {
 enum class Measured { acceleration, position };
 
 struct ReferenceCase {
-  std::size_t instants;
+  std::size_t epochs;
   Measured measured;
   bool missing = false;  ///< a tenth of the measurements at random, and one gap of 1 s
   Smoother smoother = Smoother::bryson_frazier;
@@ -35,8 +35,8 @@ struct WorstError {
 
 [[nodiscard]] inline std::vector<Epoch<1, 1>> reference_epochs(const ReferenceCase& c) {
   Normal normal(7);
-  std::vector<Epoch<1, 1>> epochs(c.instants, Epoch<1, 1>{0.005, Mat<1>::Zero()});
-  for (std::size_t k = 0; k < c.instants; ++k) {
+  std::vector<Epoch<1, 1>> epochs(c.epochs, Epoch<1, 1>{0.005, Mat<1>::Zero()});
+  for (std::size_t k = 0; k < c.epochs; ++k) {
     const double t_s = 0.005 * static_cast<double>(k);
     epochs[k].z(0) = std::sin(1.3 * t_s) + 0.02 * normal();
     if (c.missing && (k % 1000 >= 800 || normal.uniform() < 0.1))
@@ -69,7 +69,7 @@ struct WorstError {
   const auto off = [](double ours, Quad theirs) {
     return std::abs(static_cast<double>(Quad(ours) - theirs));
   };
-  for (std::size_t k = 0; k < c.instants; ++k) {
+  for (std::size_t k = 0; k < c.epochs; ++k) {
     const auto& x = run.steps[k].smoothed;
     for (int i = 0; i < 4; ++i) {
       worst.mean_stds =
@@ -78,7 +78,7 @@ struct WorstError {
         worst.cov_share =
             std::max(worst.cov_share,
                      off(x.cov(i, j), at(exact.smoothed[k].cov, i, j)) / (std(k, i) * std(k, j)));
-        if (k + 1 < c.instants)
+        if (k + 1 < c.epochs)
           worst.lag_one_share =
               std::max(worst.lag_one_share, off(run.lag_one[k](i, j), at(exact.lag_one[k], i, j)) /
                                                 (std(k + 1, i) * std(k, j)));

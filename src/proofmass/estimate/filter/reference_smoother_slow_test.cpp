@@ -8,16 +8,16 @@ namespace {
 using test::Measured;
 
 // 500 seconds: five times the bias's time constant.
-constexpr std::size_t instants = 100'000;
+constexpr std::size_t epochs = 100'000;
 
 TEST(AgainstOneHundredAndTwentyEightBits, AHundredThousandAccelerationsLoseNoDigits) {
-  const auto worst = test::worst_error({.instants = instants, .measured = Measured::acceleration});
+  const auto worst = test::worst_error({.epochs = epochs, .measured = Measured::acceleration});
   EXPECT_LT(worst.mean_stds, 1e-12);
   EXPECT_LT(worst.cov_share, 1e-11);
 }
 
 TEST(AgainstOneHundredAndTwentyEightBits, AHundredThousandPositionsLoseNoDigits) {
-  const auto worst = test::worst_error({.instants = instants, .measured = Measured::position});
+  const auto worst = test::worst_error({.epochs = epochs, .measured = Measured::position});
   EXPECT_LT(worst.mean_stds, 1e-11);
   EXPECT_LT(worst.cov_share, 1e-11);
 }

@@ -13,11 +13,11 @@ namespace {
 // apply.
 struct Gauge {
   static constexpr int states = 4, moving = 2, channels = 2;
-  std::size_t instants = 300;
+  std::size_t epochs = 300;
   bool linear = false;
   double jump_at = 1e9;  ///< epoch from which the position's measurement is larger by 1000
 
-  [[nodiscard]] std::size_t size() const { return instants; }
+  [[nodiscard]] std::size_t size() const { return epochs; }
   [[nodiscard]] Transition<4, 2> transition(const Mat<4>& x, std::size_t k) const {
     const double t = k % 7 == 0 ? 0.3 : 0.1;
     Transition<4, 2> step;
@@ -90,8 +90,8 @@ TEST(Smoother, InChunksIsTheSameAsInOnePiece) {
   }
 }
 
-TEST(Smoother, CallsForwardRisingAndBackwardFallingOnceForEachInstant) {
-  const Gauge model{.instants = 257};
+TEST(Smoother, CallsForwardRisingAndBackwardFallingOnceForEachEpoch) {
+  const Gauge model{.epochs = 257};
   std::vector<std::size_t> forward, backward;
   smooth(
       model, start(), {}, [&](std::size_t k, const auto&) { forward.push_back(k); },

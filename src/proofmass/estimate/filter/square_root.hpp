@@ -73,7 +73,7 @@ void run_square_root(const LinearSeries<N, M, U>& series,
   const Mat<N, N> prior_root = positive_root<N>(prior.cov);
   Mat<N> mean = prior.mean;
   Mat<N, N> root = prior_root;
-  int instants_gated = 0;
+  int epochs_gated = 0;
   for (std::size_t k = 0; k < series.size(); ++k) {
     Step<N, N, M> step;
     if (k > 0) {
@@ -83,9 +83,9 @@ void run_square_root(const LinearSeries<N, M, U>& series,
       array << transition.F * root, positive_root<N>(transition.Q);
       root = lower_root<N, 2 * N>(array);
     }
-    if (instants_gated >= gate.patience) {
+    if (epochs_gated >= gate.patience) {
       root = prior_root;
-      instants_gated = 0;
+      epochs_gated = 0;
     }
     Readings<N, M> readings;
     series.measure(mean, k, readings);
@@ -96,7 +96,7 @@ void run_square_root(const LinearSeries<N, M, U>& series,
       step.updates[at] = correct_root<N>(mean, root, readings.rows[at], gate);
       any_used = any_used || step.updates[at].used;
     }
-    if (step.count > 0) instants_gated = any_used ? 0 : instants_gated + 1;
+    if (step.count > 0) epochs_gated = any_used ? 0 : epochs_gated + 1;
     step.filtered = {mean, root * root.transpose()};
     visit(k, std::as_const(step), std::as_const(root));
   }

@@ -57,13 +57,13 @@ double largest_eigenvalue(const Mat<3, 3>& S) {
   return size * std::pow(four.squaredNorm(), 0.125);
 }
 
-BaseAccel base_accel_over(const TiltInstants& instants,
+BaseAccel base_accel_over(const TiltEpochs& epochs,
                           const Mat<3>& rate_bias,
                           const TiltKnown& known,
                           double memory_s,
                           double mean_memory_s) {
   BaseAccel out;
-  const bool gyroscope = !instants.rate_radps.empty();
+  const bool gyroscope = !epochs.rate_radps.empty();
   BaseScatter scatter(memory_s, mean_memory_s, gyroscope);
   Departures departures;
   Mat<3, 3> back = Mat<3, 3>::Identity();
@@ -72,27 +72,27 @@ BaseAccel base_accel_over(const TiltInstants& instants,
   const Mat<3, 3> least = square(least_accel * known.gravity_mps2) * Mat<3, 3>::Identity();
   // The estimate of the first seconds applies from the start on.
   double early_s = 0.0;
-  for (std::size_t k = 0; k < instants.step_s.size() && early_s < memory_s; ++k) {
-    const double h = instants.step_s[k];
+  for (std::size_t k = 0; k < epochs.step_s.size() && early_s < memory_s; ++k) {
+    const double h = epochs.step_s[k];
     early_s += h;
-    scatter.turn(h, gyroscope ? Mat<3>(instants.rate_radps[k] - rate_bias) : Mat<3>::Zero());
-    const Mat<3>& f = instants.force_mps2[k];
+    scatter.turn(h, gyroscope ? Mat<3>(epochs.rate_radps[k] - rate_bias) : Mat<3>::Zero());
+    const Mat<3>& f = epochs.force_mps2[k];
     if (f.allFinite()) scatter.add(f, known.gravity_mps2);
   }
   scatter.restart();
-  for (std::size_t k = 0; k < instants.step_s.size(); ++k) {
-    const double h = instants.step_s[k];
+  for (std::size_t k = 0; k < epochs.step_s.size(); ++k) {
+    const double h = epochs.step_s[k];
     if (gyroscope) {
-      const Mat<3> rate = instants.rate_radps[k] - rate_bias;
+      const Mat<3> rate = epochs.rate_radps[k] - rate_bias;
       if (rate.allFinite()) back = back * rotation_by(Mat<3>(-h * rate)).transpose();
       scatter.turn(h, rate);
     } else {
       scatter.turn(h, Mat<3>::Zero());
     }
-    const Mat<3>& f = instants.force_mps2[k];
+    const Mat<3>& f = epochs.force_mps2[k];
     if (f.allFinite()) {
       const auto departure = scatter.add(f, known.gravity_mps2);
-      if (instants.resting[k] == 0) {
+      if (epochs.resting[k] == 0) {
         if (departure.since_s) steps.push_back(*departure.since_s);
         if (last) differences.push_back((f - *last)(static_cast<Eigen::Index>(k % 3)));
         departures.vectors.emplace_back(back * departure.mps2);
@@ -152,21 +152,20 @@ Mat<3, 3> BaseScatter::covariance(double gravity_mps2, double norm_std_mps2) con
   return along * one + std::min(1.0, most / std::max(across.trace(), 1e-12)) * across;
 }
 
-BaseAccel base_accel(const TiltInstants& instants,
+BaseAccel base_accel(const TiltEpochs& epochs,
                      const Mat<3>& rate_bias,
                      const TiltKnown& known,
                      double mean_memory_s) {
-  const BaseAccel first =
-      base_accel_over(instants, rate_bias, known, least_memory_s, mean_memory_s);
+  const BaseAccel first = base_accel_over(epochs, rate_bias, known, least_memory_s, mean_memory_s);
   const double memory_s = std::clamp(memory_times * first.time_s, least_memory_s, most_memory_s);
-  BaseAccel out = base_accel_over(instants, rate_bias, known, memory_s, mean_memory_s);
+  BaseAccel out = base_accel_over(epochs, rate_bias, known, memory_s, mean_memory_s);
   // The running mean has removed part of the slow component: M/(M + τ) is left.
   const double taken = 1.0 + out.time_s / mean_memory_s;
   out.time_s *= taken;
   // A scatter over so few correlation times follows Student's t; with gyroscope the largest
   // eigenvalue in all directions is wide enough.
   const double wider =
-      instants.rate_radps.empty() ? student_t_quantile(0.975, effective_dof) / 1.959964 : 1.0;
+      epochs.rate_radps.empty() ? student_t_quantile(0.975, effective_dof) / 1.959964 : 1.0;
   for (Mat<3, 3>& cov : out.cov_m2ps4) cov *= wider * wider * taken;
   return out;
 }

@@ -74,7 +74,7 @@ struct BaseAccel {
 ///
 /// This is a heuristic, not a likelihood: in one-step prediction a smooth acceleration resembles a
 /// slow one, and maximum likelihood would make it so slow that it absorbs gravity.
-[[nodiscard]] BaseAccel base_accel(const TiltInstants& instants,
+[[nodiscard]] BaseAccel base_accel(const TiltEpochs& epochs,
                                    const Mat<3>& rate_bias,
                                    const TiltKnown& known,
                                    double mean_memory_s);

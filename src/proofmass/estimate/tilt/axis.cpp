@@ -45,8 +45,8 @@ std::vector<double> unwrapped(const std::vector<double>& angle_rad) {
   return out;
 }
 
-AxisInstants instants_of(const AxisTiltRecord& record) {
-  AxisInstants out;
+AxisTiltEpochs epochs_of(const AxisTiltRecord& record) {
+  AxisTiltEpochs out;
   out.angle_rad = unwrapped(record.angle_rad);
   out.step_s.push_back(0.0);
   out.rate_radps.push_back(record.rate_radps.front());
@@ -79,17 +79,17 @@ Result<AxisTiltSolution> estimate_axis_tilt(const AxisTiltRecord& record,
                                             const AxisTiltOptions& options) {
   AxisTiltSolution solution;
   if (Status fits = check(record, solution); !fits) return fits.error();
-  const AxisInstants instants = instants_of(record);
+  const AxisTiltEpochs epochs = epochs_of(record);
   if (options.progress) options.progress("fitting the noise", 0.0);
-  solution.noise = fit_axis_noise(instants, options);
-  const AxisTiltModel model(instants, solution.noise, options);
+  solution.noise = fit_axis_noise(epochs, options);
+  const AxisTiltModel model(epochs, solution.noise, options);
   AxisTiltSeries& s = solution.series;
   s.time_s = record.time_s;
   for (auto* values : {&s.angle_rad, &s.angle_std_rad, &s.filtered_angle_rad,
                        &s.filtered_angle_std_rad, &s.rate_bias_radps, &s.rate_bias_std_radps})
     values->assign(solution.samples, 0.0);
   s.weight.assign(solution.samples, 0.0F);
-  const double step_s = median(View<double>(instants.step_s).subspan(1)).value_or(0.0);
+  const double step_s = median(View<double>(epochs.step_s).subspan(1)).value_or(0.0);
   ConsistencyCheck check_of({.channels = {"angle"}, .rate_hz = step_s > 0.0 ? 1.0 / step_s : 1.0});
   smooth(
       model, model.start(), axis_gate,

@@ -15,7 +15,7 @@ namespace proofmass::estimate {
 namespace {
 
 constexpr double prior_std = 3.0;  // of each logarithm
-constexpr std::size_t most_instants = 20000;
+constexpr std::size_t most_epochs = 20000;
 
 using Logs = std::array<double, 5>;
 
@@ -27,8 +27,8 @@ AxisTiltNoise noise_of(const Logs& logs) {
           .reading_std_rad = std::exp(logs[4])};
 }
 
-AxisInstants head_of(const AxisInstants& all) {
-  const std::size_t size = std::min(most_instants, all.step_s.size());
+AxisTiltEpochs head_of(const AxisTiltEpochs& all) {
+  const std::size_t size = std::min(most_epochs, all.step_s.size());
   const auto head = [size](const std::vector<double>& values) {
     return std::vector<double>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(size));
   };
@@ -36,10 +36,10 @@ AxisInstants head_of(const AxisInstants& all) {
 }
 
 // Usual values, from the scatter of neighbouring angles.
-Logs usual(const AxisInstants& instants) {
+Logs usual(const AxisTiltEpochs& epochs) {
   std::vector<double> steps;
-  for (std::size_t k = 1; k < instants.angle_rad.size(); ++k)
-    steps.push_back(instants.angle_rad[k] - instants.angle_rad[k - 1]);
+  for (std::size_t k = 1; k < epochs.angle_rad.size(); ++k)
+    steps.push_back(epochs.angle_rad[k] - epochs.angle_rad[k - 1]);
   const double scatter = std::max(1e-5, robust_std(steps).value_or(0.0));
   return {std::log(2e-3), std::log(1e-3), std::log(scatter), std::log(0.05),
           std::log(0.3 * scatter)};
@@ -47,20 +47,20 @@ Logs usual(const AxisInstants& instants) {
 
 }  // namespace
 
-AxisTiltModel::AxisTiltModel(const AxisInstants& instants,
+AxisTiltModel::AxisTiltModel(const AxisTiltEpochs& epochs,
                              const AxisTiltNoise& noise,
                              const AxisTiltOptions& options)
-    : instants_(instants),
+    : epochs_(epochs),
       noise_(noise),
       rate_bias_std_radps_(options.rate_bias_std_radps),
       rate_scale_std_(options.rate_scale_std) {
   Moments rates;
-  for (const double rate : instants.rate_radps) rates.add(rate);
+  for (const double rate : epochs.rate_radps) rates.add(rate);
   usual_rate_radps_ = rates.std();
 }
 
 Transition<3, 3> AxisTiltModel::transition(const Mat<3>& x, std::size_t k) const {
-  const double h = instants_.step_s[k], rate = instants_.rate_radps[k];
+  const double h = epochs_.step_s[k], rate = epochs_.rate_radps[k];
   const bool known = std::isfinite(rate);
   const double phi = std::exp(-h / noise_.motion_time_s);
   Transition<3, 3> step{x, Mat<3, 3>::Identity(), Mat<3, 3>::Zero(), Mat<3>::Zero()};
@@ -82,7 +82,7 @@ Transition<3, 3> AxisTiltModel::transition(const Mat<3>& x, std::size_t k) const
 
 void AxisTiltModel::measure(const Mat<3>& x, std::size_t k, Readings<3, 1>& out) const {
   out.count = 0;
-  const double z = instants_.angle_rad[k];
+  const double z = epochs_.angle_rad[k];
   if (!std::isfinite(z)) return;
   out.rows[0] = {z, x(0) + x(2), square(noise_.reading_std_rad), Mat<3>(1.0, 0.0, 1.0)};
   out.count = 1;
@@ -91,18 +91,18 @@ void AxisTiltModel::measure(const Mat<3>& x, std::size_t k, Readings<3, 1>& out)
 FilterState<3> AxisTiltModel::start() const {
   FilterState<3> state;
   const auto first =
-      std::ranges::find_if(instants_.angle_rad, [](double angle) { return std::isfinite(angle); });
-  state.x.mean(0) = first == instants_.angle_rad.end() ? 0.0 : *first;
+      std::ranges::find_if(epochs_.angle_rad, [](double angle) { return std::isfinite(angle); });
+  state.x.mean(0) = first == epochs_.angle_rad.end() ? 0.0 : *first;
   // Flat prior of the angle, which the measurement itself then narrows.
   state.x.cov.diagonal() = Mat<3>(square(std::numbers::pi / std::sqrt(3.0)),
                                   square(rate_bias_std_radps_), square(noise_.motion_std_rad));
   return state;
 }
 
-double axis_log_likelihood(const AxisInstants& instants,
+double axis_log_likelihood(const AxisTiltEpochs& epochs,
                            const AxisTiltNoise& noise,
                            const AxisTiltOptions& options) {
-  const AxisTiltModel model(instants, noise, options);
+  const AxisTiltModel model(epochs, noise, options);
   FilterState<3> state = model.start();
   double sum = 0.0;
   filter(model, 0, model.size(), axis_gate, state,
@@ -116,11 +116,11 @@ double axis_log_likelihood(const AxisInstants& instants,
   return sum;
 }
 
-AxisTiltNoise fit_axis_noise(const AxisInstants& all, const AxisTiltOptions& options) {
-  const AxisInstants instants = head_of(all);
-  const Logs middle = usual(instants);
+AxisTiltNoise fit_axis_noise(const AxisTiltEpochs& all, const AxisTiltOptions& options) {
+  const AxisTiltEpochs epochs = head_of(all);
+  const Logs middle = usual(epochs);
   const auto value_at = [&](const Logs& logs) {
-    double value = -axis_log_likelihood(instants, noise_of(logs), options);
+    double value = -axis_log_likelihood(epochs, noise_of(logs), options);
     for (std::size_t i = 0; i < logs.size(); ++i) {
       const double off = (logs[i] - middle[i]) / prior_std;
       value += 0.5 * off * off;

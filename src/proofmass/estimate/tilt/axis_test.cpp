@@ -88,9 +88,9 @@ TEST(AxisTilt, SaysWhyItCannot) {
 }
 
 TEST(AxisTiltModel, HasTheSameNoiseOverTwoStepsAsOverOneOfTheirLength) {
-  const AxisInstants instants{
+  const AxisTiltEpochs epochs{
       .step_s = {0.0, 0.01, 0.01, 0.02}, .rate_radps = {0, 0, 0, 0}, .angle_rad = {0, 0, 0, 0}};
-  const AxisTiltModel model(instants,
+  const AxisTiltModel model(epochs,
                             {.rate_noise_radps_rthz = 0.01,
                              .rate_bias_walk_radps_rts = 0.02,
                              .motion_std_rad = 0.1,

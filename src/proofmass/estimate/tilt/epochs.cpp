@@ -1,4 +1,4 @@
-#include "proofmass/estimate/tilt/instants.hpp"
+#include "proofmass/estimate/tilt/epochs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,8 +44,8 @@ Mat<3> rate_over(const Mat<3>& before, const Mat<3>& now, double step_s, double 
   return 0.5 * (now + before);
 }
 
-TiltInstants instants_of(const TiltRecord& record, const TiltSolution& solution) {
-  TiltInstants out;
+TiltEpochs epochs_of(const TiltRecord& record, const TiltSolution& solution) {
+  TiltEpochs out;
   const bool rates = has_rates(record);
   std::vector<double> steps(1, 0.0);
   for (std::size_t k = 1; k < solution.samples; ++k)
@@ -65,26 +65,26 @@ TiltInstants instants_of(const TiltRecord& record, const TiltSolution& solution)
   return out;
 }
 
-std::size_t drop_held(TiltInstants& instants) {
-  const std::size_t size = instants.force_mps2.size();
+std::size_t drop_held(TiltEpochs& epochs) {
+  const std::size_t size = epochs.force_mps2.size();
   std::vector<std::size_t> repeats;
   std::size_t moving = 0;
   for (std::size_t k = 1; k < size; ++k) {
-    if (instants.resting[k] != 0 || !instants.force_mps2[k].allFinite()) continue;
+    if (epochs.resting[k] != 0 || !epochs.force_mps2[k].allFinite()) continue;
     ++moving;
-    const bool same_rate = instants.rate_at_radps.empty() ||
-                           instants.rate_at_radps[k] == instants.rate_at_radps[k - 1];
-    if (same_rate && instants.force_mps2[k] == instants.force_mps2[k - 1]) repeats.push_back(k);
+    const bool same_rate =
+        epochs.rate_at_radps.empty() || epochs.rate_at_radps[k] == epochs.rate_at_radps[k - 1];
+    if (same_rate && epochs.force_mps2[k] == epochs.force_mps2[k - 1]) repeats.push_back(k);
   }
   if (2 * repeats.size() < moving) return 0;
-  for (const std::size_t k : repeats) instants.force_mps2[k].setConstant(no_value);
+  for (const std::size_t k : repeats) epochs.force_mps2[k].setConstant(no_value);
   return repeats.size();
 }
 
 TiltKnown known_of(const TiltRecord& record,
                    const TiltOptions& options,
                    const TiltSolution& solution,
-                   const TiltInstants& instants) {
+                   const TiltEpochs& epochs) {
   TiltKnown known{.gravity_mps2 = options.gravity_mps2.value,
                   .gravity_std_mps2 = options.gravity_mps2.std,
                   .rest_std_mps2 = rest_std(record.accel_mps2, solution, 1e-4),
@@ -101,12 +101,12 @@ TiltKnown known_of(const TiltRecord& record,
   }
   if (!has_rates(record)) return known;
   known.rest_rate_std_radps = rest_std(record.rate_radps, solution, 1e-5);
-  const double step_s = median(View<double>(instants.step_s).subspan(1)).value_or(0.0);
+  const double step_s = median(View<double>(epochs.step_s).subspan(1)).value_or(0.0);
   if (!solution.rests.empty())
     known.rate_noise_radps_rthz = known.rest_rate_std_radps.maxCoeff() * std::sqrt(step_s);
   known.rate_scale_std = options.rate_scale_std;
   std::vector<double> rates;
-  for (const Mat<3>& rate : instants.rate_at_radps)
+  for (const Mat<3>& rate : epochs.rate_at_radps)
     if (rate.allFinite()) rates.push_back(rate.norm());
   known.usual_rate_radps = std::max(0.05, quantile(rates, 0.9).value_or(1.0));
   return known;

@@ -17,17 +17,17 @@ namespace proofmass::estimate {
 [[nodiscard]] double longest_bridge_s(double usual_step_s);
 
 /// Steps, forces and rates.
-[[nodiscard]] TiltInstants instants_of(const TiltRecord& record, const TiltSolution& solution);
+[[nodiscard]] TiltEpochs epochs_of(const TiltRecord& record, const TiltSolution& solution);
 
 /// Merges measurements that a logger repeated until the next one arrived, and returns the number
 /// removed. They are identified by repeated whole rows in motion, where noise alone would make them
 /// differ.
-[[nodiscard]] std::size_t drop_held(TiltInstants& instants);
+[[nodiscard]] std::size_t drop_held(TiltEpochs& epochs);
 
 /// Gravity's norm, the noise at rest, and the base's usual rotation rate.
 [[nodiscard]] TiltKnown known_of(const TiltRecord& record,
                                  const TiltOptions& options,
                                  const TiltSolution& solution,
-                                 const TiltInstants& instants);
+                                 const TiltEpochs& epochs);
 
 }  // namespace proofmass::estimate

@@ -5,7 +5,7 @@
 
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/tilt/instants.hpp"
+#include "proofmass/estimate/tilt/epochs.hpp"
 #include "proofmass/estimate/tilt/motion.hpp"
 
 namespace proofmass::estimate {
@@ -32,32 +32,31 @@ Mat<3, 3> least_cov(double gravity_mps2) {
   return square(least_accel * gravity_mps2) * Mat<3, 3>::Identity();
 }
 
-double step_of(const std::vector<LiveInstant>& instants) {
-  return (instants.back().time_s - instants.front().time_s) /
-         static_cast<double>(instants.size() - 1);
+double step_of(const std::vector<LiveEpoch>& epochs) {
+  return (epochs.back().time_s - epochs.front().time_s) / static_cast<double>(epochs.size() - 1);
 }
 
 /// White noise of one measurement, from the differences of neighbours.
-double difference_std(const std::vector<LiveInstant>& instants, std::size_t vector) {
+double difference_std(const std::vector<LiveEpoch>& epochs, std::size_t vector) {
   std::vector<double> differences;
-  for (std::size_t k = 1; k < instants.size(); ++k)
+  for (std::size_t k = 1; k < epochs.size(); ++k)
     for (int i = 0; i < 3; ++i) {
-      const double step = instants[k].vectors[vector](i) - instants[k - 1].vectors[vector](i);
+      const double step = epochs[k].vectors[vector](i) - epochs[k - 1].vectors[vector](i);
       if (std::isfinite(step)) differences.push_back(step);
     }
   return robust_std(differences).value_or(0.0) / std::numbers::sqrt2;
 }
 
 /// Norm of these measurements, if it can be that of gravity.
-double norm_of(const std::vector<LiveInstant>& instants, double gravity_mps2) {
+double norm_of(const std::vector<LiveEpoch>& epochs, double gravity_mps2) {
   std::vector<double> norms;
-  for (const LiveInstant& instant : instants)
-    if (instant.has(0)) norms.push_back(instant.vectors[0].norm());
+  for (const LiveEpoch& epoch : epochs)
+    if (epoch.has(0)) norms.push_back(epoch.vectors[0].norm());
   const double usual = median(norms).value_or(gravity_mps2);
   return std::abs(usual - gravity_mps2) < 0.03 * gravity_mps2 ? usual : gravity_mps2;
 }
 
-std::size_t instants_in(double time_s, double step_s) {
+std::size_t epochs_in(double time_s, double step_s) {
   return static_cast<std::size_t>(std::max(1L, std::lround(time_s / step_s)));
 }
 
@@ -78,15 +77,14 @@ double RunningCorrelation::time() const {
   return -1.0 / std::log(std::clamp(r, std::exp(-2.0), 0.999));
 }
 
-LiveTiltFilter::LiveTiltFilter(const std::vector<LiveInstant>& first,
-                               const LiveTiltOptions& options)
+LiveTiltFilter::LiveTiltFilter(const std::vector<LiveEpoch>& first, const LiveTiltOptions& options)
     : gyroscope_(options.gyroscope.has_value()),
       usual_step_s_(step_of(first)),
       scatter_(memory_s, gyroscope_ ? mean_memory_s : free_mean_memory_s, gyroscope_),
       long_scatter_(long_memory_s, gyroscope_ ? mean_memory_s : free_mean_memory_s, gyroscope_),
-      correlation_(instants_in(apart_s, usual_step_s_)),
-      apart_s_(static_cast<double>(instants_in(apart_s, usual_step_s_)) * usual_step_s_),
-      window_(instants_in(options.lag_s, usual_step_s_)),
+      correlation_(epochs_in(apart_s, usual_step_s_)),
+      apart_s_(static_cast<double>(epochs_in(apart_s, usual_step_s_)) * usual_step_s_),
+      window_(epochs_in(options.lag_s, usual_step_s_)),
       times_s_(window_.lag() + 1) {
   known_.gravity_mps2 = norm_of(first, options.tilt.gravity_mps2.value);
   known_.rate_bias_std_radps = options.tilt.rate_bias_std_radps;
@@ -107,14 +105,14 @@ LiveTiltFilter::LiveTiltFilter(const std::vector<LiveInstant>& first,
   now_.rate_at_radps = now_.rate_radps;
 }
 
-void LiveTiltFilter::read(const LiveInstant& instant) {
-  const double step_s = instants_ == 0 ? 0.0 : instant.time_s - time_s_;
-  time_s_ = instant.time_s;
+void LiveTiltFilter::read(const LiveEpoch& epoch) {
+  const double step_s = epochs_ == 0 ? 0.0 : epoch.time_s - time_s_;
+  time_s_ = epoch.time_s;
   now_.step_s[1] = step_s;
-  now_.force_mps2[1] = instant.vectors[0];
+  now_.force_mps2[1] = epoch.vectors[0];
   if (!gyroscope_) return;
-  const Mat<3>& rate = instant.vectors[1];
-  const Mat<3> before = instants_ == 0 ? rate : now_.rate_at_radps[1];
+  const Mat<3>& rate = epoch.vectors[1];
+  const Mat<3> before = epochs_ == 0 ? rate : now_.rate_at_radps[1];
   now_.rate_at_radps[1] = rate;
   now_.rate_radps[1] = rate_over(before, rate, step_s, longest_bridge_s(usual_step_s_));
 }
@@ -144,27 +142,27 @@ void LiveTiltFilter::follow_motion() {
       least_cov(known_.gravity_mps2);
 }
 
-void LiveTiltFilter::step(const LiveInstant& instant) {
-  read(instant);
+void LiveTiltFilter::step(const LiveEpoch& epoch) {
+  read(epoch);
   follow_motion();
-  if (instants_ == 0) {
+  if (epochs_ == 0) {
     now_.force_mps2[0] = now_.force_mps2[1];
     now_.accel_cov_m2ps4[0] = now_.accel_cov_m2ps4[1];
   }
   const TiltModel model(now_, known_, motion_);
-  if (instants_ == 0) state_ = model.start();
-  advance(model, instants_ == 0 ? 0 : 1, tilt_gate, state_, step_);
+  if (epochs_ == 0) state_ = model.start();
+  advance(model, epochs_ == 0 ? 0 : 1, tilt_gate, state_, step_);
   const double fade = std::exp(-now_.step_s[1] / predicted_s);
   predicted_ = fade * predicted_ + tilt_log_likelihood(step_, model.accel_readings(1));
   window_.push(step_);
-  times_s_[instants_ % times_s_.size()] = time_s_;
-  ++instants_;
+  times_s_[epochs_ % times_s_.size()] = time_s_;
+  ++epochs_;
   nis_ = step_.count == 0 ? std::numeric_limits<double>::quiet_NaN() : 0.0;
   for (int i = 0; i < step_.count; ++i)
     nis_ += step_.updates[static_cast<std::size_t>(i)].nis() / step_.count;
 }
 
-LiveTiltBank::LiveTiltBank(const std::vector<LiveInstant>& first, const LiveTiltOptions& options) {
+LiveTiltBank::LiveTiltBank(const std::vector<LiveEpoch>& first, const LiveTiltOptions& options) {
   const auto add = [&](double factor) {
     filters_.push_back(std::make_unique<LiveTiltFilter>(first, options));
     filters_.back()->turn_more(factor);
@@ -175,11 +173,11 @@ LiveTiltBank::LiveTiltBank(const std::vector<LiveInstant>& first, const LiveTilt
   add(1.0 / apart);
 }
 
-void LiveTiltBank::step(const LiveInstant& instant) {
-  for (const auto& filter : filters_) filter->step(instant);
-  if (filters_.size() == 1 || instant.time_s < next_s_) return;
+void LiveTiltBank::step(const LiveEpoch& epoch) {
+  for (const auto& filter : filters_) filter->step(epoch);
+  if (filters_.size() == 1 || epoch.time_s < next_s_) return;
   constexpr double every_s = 0.25;
-  next_s_ = instant.time_s + every_s;
+  next_s_ = epoch.time_s + every_s;
   choose();
 }
 

@@ -9,7 +9,7 @@
 #include "proofmass/estimate/live_tilt.hpp"
 #include "proofmass/estimate/tilt/accel.hpp"
 #include "proofmass/estimate/tilt/model.hpp"
-#include "proofmass/estimate/wheel/live_instants.hpp"
+#include "proofmass/estimate/wheel/live_epochs.hpp"
 
 // tilt/model.hpp's filter, online.
 namespace proofmass::estimate {
@@ -18,7 +18,7 @@ namespace proofmass::estimate {
 /// tenth of a second before.
 class RunningCorrelation {
  public:
-  explicit RunningCorrelation(std::size_t instants_apart) : ring_(instants_apart) {}
+  explicit RunningCorrelation(std::size_t epochs_apart) : ring_(epochs_apart) {}
   void add(const Mat<3>& departure, double weight);
   /// In units of the distance, at least one half.
   [[nodiscard]] double time() const;
@@ -32,10 +32,10 @@ class RunningCorrelation {
 class LiveTiltFilter {
  public:
   /// Initialised from the first epochs; at least two of them.
-  LiveTiltFilter(const std::vector<LiveInstant>& first, const LiveTiltOptions& options);
+  LiveTiltFilter(const std::vector<LiveEpoch>& first, const LiveTiltOptions& options);
 
   /// Processes one epoch. Does not allocate.
-  void step(const LiveInstant& instant);
+  void step(const LiveEpoch& epoch);
 
   /// Direction of gravity's reaction at the last epoch, m/s².
   [[nodiscard]] const Gaussian<3>& now() const { return window_.state(0); }
@@ -43,7 +43,7 @@ class LiveTiltFilter {
   [[nodiscard]] const Gaussian<3>* lagged() const {
     return window_.size() > window_.lag() ? &window_.state(window_.lag()) : nullptr;
   }
-  [[nodiscard]] double lagged_time_s() const { return times_s_[instants_ % times_s_.size()]; }
+  [[nodiscard]] double lagged_time_s() const { return times_s_[epochs_ % times_s_.size()]; }
   [[nodiscard]] double nis() const { return nis_; }
 
   /// Scales the assumed strength of the base's rotation from here on.
@@ -53,12 +53,12 @@ class LiveTiltFilter {
   [[nodiscard]] double predicted() const { return predicted_; }
 
  private:
-  void read(const LiveInstant& instant);
+  void read(const LiveEpoch& epoch);
   void follow_motion();
 
   bool gyroscope_;
   double usual_step_s_ = 0.01;
-  TiltInstants now_;  ///< two epochs: 0 the first, 1 any later
+  TiltEpochs now_;  ///< two epochs: 0 the first, 1 any later
   TiltKnown known_;
   TiltMotion motion_;
   BaseScatter scatter_, long_scatter_;
@@ -70,7 +70,7 @@ class LiveTiltFilter {
   FixedLag<9, 3> window_;
   std::vector<double> times_s_;
   double time_s_ = 0.0, nis_ = std::numeric_limits<double>::quiet_NaN();
-  std::size_t instants_ = 0;
+  std::size_t epochs_ = 0;
   double predicted_ = 0.0;
 };
 
@@ -78,8 +78,8 @@ class LiveTiltFilter {
 /// rotation of the base. If one of them has predicted the last seconds better, all are shifted.
 class LiveTiltBank {
  public:
-  LiveTiltBank(const std::vector<LiveInstant>& first, const LiveTiltOptions& options);
-  void step(const LiveInstant& instant);
+  LiveTiltBank(const std::vector<LiveEpoch>& first, const LiveTiltOptions& options);
+  void step(const LiveEpoch& epoch);
   [[nodiscard]] const LiveTiltFilter& best() const { return *filters_.front(); }
 
  private:

@@ -22,12 +22,12 @@ Mat<3, 3> across(const Mat<3>& g) {
 
 }  // namespace
 
-TiltModel::TiltModel(const TiltInstants& instants, const TiltKnown& known, const TiltMotion& motion)
-    : instants_(instants), known_(known), motion_(motion) {}
+TiltModel::TiltModel(const TiltEpochs& epochs, const TiltKnown& known, const TiltMotion& motion)
+    : epochs_(epochs), known_(known), motion_(motion) {}
 
 void TiltModel::turn_by_gyroscope(const Mat<9>& x, std::size_t k, Transition<9, 9>& step) const {
-  const double h = instants_.step_s[k];
-  const Mat<3> rate = instants_.rate_radps[k];
+  const double h = epochs_.step_s[k];
+  const Mat<3> rate = epochs_.rate_radps[k];
   const bool known = rate.allFinite();
   const Mat<3> turn = known ? Mat<3>((rate - x.tail<3>()) * h) : Mat<3>::Zero();
   const Mat<3, 3> R = rotation_by(-turn);
@@ -43,7 +43,7 @@ void TiltModel::turn_by_gyroscope(const Mat<9>& x, std::size_t k, Transition<9, 
 }
 
 void TiltModel::turn_freely(const Mat<9>& x, std::size_t k, Transition<9, 9>& step) const {
-  const double h = instants_.step_s[k];
+  const double h = epochs_.step_s[k];
   const Mat<3> g = x.head<3>(), v = x.tail<3>();
   const Mat<3> rate = cross(v, g) / g.squaredNorm();
   const Mat<3, 3> R = rotation_by(-h * rate);
@@ -61,8 +61,8 @@ void TiltModel::turn_freely(const Mat<9>& x, std::size_t k, Transition<9, 9>& st
 
 Transition<9, 9> TiltModel::transition(const Mat<9>& x, std::size_t k) const {
   Transition<9, 9> step{x, Mat<9, 9>::Identity(), Mat<9, 9>::Zero(), Mat<9>::Zero()};
-  const double h = instants_.step_s[k];
-  const bool rests = instants_.resting[k] != 0, rested = instants_.resting[k - 1] != 0;
+  const double h = epochs_.step_s[k];
+  const bool rests = epochs_.resting[k] != 0, rested = epochs_.resting[k - 1] != 0;
   if (rests && rested) {
     step.Q.topLeftCorner<3, 3>() = square(creep_rad_rts) * h * across(x.head<3>());
     if (!motion_.gyroscope) {
@@ -82,14 +82,14 @@ Transition<9, 9> TiltModel::transition(const Mat<9>& x, std::size_t k) const {
   const Mat<3, 3> R = phi * step.F.topLeftCorner<3, 3>();
   step.mean.segment<3>(3) = R * x.segment<3>(3);
   step.F.block<3, 3>(3, 3) = R;
-  if (motion_.gyroscope && phi > 0.0 && instants_.rate_radps[k].allFinite())
+  if (motion_.gyroscope && phi > 0.0 && epochs_.rate_radps[k].allFinite())
     step.F.block<3, 3>(3, 6) = -h * cross_matrix(step.mean.segment<3>(3));
-  if (!rests) step.Q.block<3, 3>(3, 3) = (1.0 - phi * phi) * instants_.accel_cov_m2ps4[k];
+  if (!rests) step.Q.block<3, 3>(3, 3) = (1.0 - phi * phi) * epochs_.accel_cov_m2ps4[k];
   return step;
 }
 
 int TiltModel::accel_readings(std::size_t k) const {
-  return static_cast<int>(instants_.force_mps2[k].array().isFinite().count());
+  return static_cast<int>(epochs_.force_mps2[k].array().isFinite().count());
 }
 
 void TiltModel::measure(const Mat<9>& x, std::size_t k, Readings<9, 6>& out) const {
@@ -97,9 +97,9 @@ void TiltModel::measure(const Mat<9>& x, std::size_t k, Readings<9, 6>& out) con
   const auto add = [&out](const Reading<9>& reading) {
     out.rows[static_cast<std::size_t>(out.count++)] = reading;
   };
-  const bool rests = instants_.resting[k] != 0;
+  const bool rests = epochs_.resting[k] != 0;
   for (int i = 0; i < 3; ++i) {
-    const double f = instants_.force_mps2[k](i);
+    const double f = epochs_.force_mps2[k](i);
     if (!std::isfinite(f)) continue;
     const double variance =
         rests ? square(known_.rest_std_mps2(i)) : square(motion_.reading_std_mps2);
@@ -107,7 +107,7 @@ void TiltModel::measure(const Mat<9>& x, std::size_t k, Readings<9, 6>& out) con
   }
   if (!rests || !motion_.gyroscope) return;
   for (int i = 0; i < 3; ++i) {
-    const double rate = instants_.rate_at_radps[k](i);
+    const double rate = epochs_.rate_at_radps[k](i);
     if (!std::isfinite(rate)) continue;
     add({rate, x(6 + i), square(known_.rest_rate_std_radps(i)), Mat<9>(Mat<9>::Unit(6 + i))});
   }
@@ -115,7 +115,7 @@ void TiltModel::measure(const Mat<9>& x, std::size_t k, Readings<9, 6>& out) con
 
 FilterState<9> TiltModel::start() const {
   const double G = known_.gravity_mps2;
-  for (const Mat<3>& f : instants_.force_mps2)
+  for (const Mat<3>& f : epochs_.force_mps2)
     if (f.allFinite() && f.norm() > 0.0) return start_about(f * (G / f.norm()));
   return start_about({0.0, 0.0, G});
 }
@@ -125,9 +125,9 @@ FilterState<9> TiltModel::start_about(const Mat<3>& g) const {
   const double G = known_.gravity_mps2;
   state.x.mean.setZero();
   state.x.mean.head<3>() = g;
-  const bool rests = !instants_.resting.empty() && instants_.resting.front() != 0;
+  const bool rests = !epochs_.resting.empty() && epochs_.resting.front() != 0;
   Mat<3, 3> accel = Mat<3, 3>::Zero();
-  if (!rests) accel = instants_.accel_cov_m2ps4.front();
+  if (!rests) accel = epochs_.accel_cov_m2ps4.front();
   // The measurement used for the start is processed again: the prior is so wide that it counts
   // once.
   const double wide = 100.0 * (accel.trace() / 3.0 + square(motion_.reading_std_mps2) +

@@ -12,7 +12,7 @@
 namespace proofmass::estimate {
 
 /// Filter input for a stretch of a recording: what does not depend on the noise parameters.
-struct TiltInstants {
+struct TiltEpochs {
   std::vector<double> step_s;         ///< to this epoch from the previous one; 0 at the first
   std::vector<Mat<3>> force_mps2;     ///< NaN where missing
   std::vector<Mat<3>> rate_radps;     ///< mean over the step to it; NaN: unknown; empty: no gyro
@@ -51,9 +51,9 @@ class TiltModel {
  public:
   static constexpr int states = 9, moving = 9, channels = 6;
 
-  TiltModel(const TiltInstants& instants, const TiltKnown& known, const TiltMotion& motion);
+  TiltModel(const TiltEpochs& epochs, const TiltKnown& known, const TiltMotion& motion);
 
-  [[nodiscard]] std::size_t size() const { return instants_.step_s.size(); }
+  [[nodiscard]] std::size_t size() const { return epochs_.step_s.size(); }
   [[nodiscard]] Transition<9, 9> transition(const Mat<9>& x, std::size_t k) const;
   void measure(const Mat<9>& x, std::size_t k, Readings<9, 6>& out) const;
   void reopen(Gaussian<9>& x, std::size_t) const;
@@ -69,7 +69,7 @@ class TiltModel {
   void turn_by_gyroscope(const Mat<9>& x, std::size_t k, Transition<9, 9>& step) const;
   void turn_freely(const Mat<9>& x, std::size_t k, Transition<9, 9>& step) const;
 
-  const TiltInstants& instants_;
+  const TiltEpochs& epochs_;
   TiltKnown known_;
   TiltMotion motion_;
 };

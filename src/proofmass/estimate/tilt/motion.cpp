@@ -45,27 +45,27 @@ double tilt_log_likelihood(const StepOf<TiltModel>& step, int readings) {
   return sum;
 }
 
-double tilt_log_likelihood(const TiltInstants& instants,
+double tilt_log_likelihood(const TiltEpochs& epochs,
                            const TiltKnown& known,
                            const TiltMotion& motion) {
-  const TiltModel model(instants, known, motion);
+  const TiltModel model(epochs, known, motion);
   FilterState<9> state = model.start();
   double sum = 0.0;
   filter(model, 0, model.size(), tilt_gate, state,
          [&](std::size_t k, const StepOf<TiltModel>& step) {
-           if (instants.resting[k] != 0) return;
+           if (epochs.resting[k] != 0) return;
            sum += tilt_log_likelihood(step, model.accel_readings(k));
          });
   return sum;
 }
 
-TiltMotion fit_tilt_motion(const TiltInstants& instants,
+TiltMotion fit_tilt_motion(const TiltEpochs& epochs,
                            const TiltKnown& known,
                            const BaseAccel& accel,
                            bool gyroscope) {
   std::vector<double> moving;
   for (std::size_t k = 0; k < accel.cov_m2ps4.size(); ++k)
-    if (instants.resting[k] == 0) moving.push_back(std::sqrt(accel.cov_m2ps4[k].trace() / 3.0));
+    if (epochs.resting[k] == 0) moving.push_back(std::sqrt(accel.cov_m2ps4[k].trace() / 3.0));
   TiltMotion motion{.gyroscope = gyroscope,
                     .drive = known.rate_noise_radps_rthz.value_or(usual_rate_noise_radps_rthz),
                     .accel_std_mps2 = median(moving).value_or(0.0),
@@ -79,7 +79,7 @@ TiltMotion fit_tilt_motion(const TiltInstants& instants,
   const auto look = [&](double log_drive) {
     TiltMotion trial = motion;
     trial.drive = std::exp(log_drive);
-    const double value = tilt_log_likelihood(instants, known, trial);
+    const double value = tilt_log_likelihood(epochs, known, trial);
     if (value > best) {
       best = value;
       found = trial.drive;
@@ -95,10 +95,8 @@ TiltMotion fit_tilt_motion(const TiltInstants& instants,
   return motion;
 }
 
-Mat<3> rate_bias_of(const TiltInstants& instants,
-                    const TiltKnown& known,
-                    const TiltMotion& motion) {
-  const TiltModel model(instants, known, motion);
+Mat<3> rate_bias_of(const TiltEpochs& epochs, const TiltKnown& known, const TiltMotion& motion) {
+  const TiltModel model(epochs, known, motion);
   Mat<3> bias = Mat<3>::Zero();
   smooth(
       model, model.start(), tilt_gate, [](std::size_t, const auto&) {},
@@ -113,15 +111,15 @@ namespace {
 // The filter's results, epoch by epoch.
 class FilterNotes {
  public:
-  FilterNotes(const TiltInstants& instants,
+  FilterNotes(const TiltEpochs& epochs,
               const TiltModel& model,
               const ForceSpread& spread,
               TiltSolution& solution)
-      : instants_(instants),
+      : epochs_(epochs),
         model_(model),
         spread_(spread),
         solution_(solution),
-        check_({.channels = {"x", "y", "z"}, .rate_hz = rate_hz(instants)}) {}
+        check_({.channels = {"x", "y", "z"}, .rate_hz = rate_hz(epochs)}) {}
 
   void operator()(std::size_t k, const StepOf<TiltModel>& step) {
     set(solution_, k,
@@ -130,12 +128,12 @@ class FilterNotes {
     double weight = model_.accel_readings(k) == 0 ? 0.0 : 1.0;
     std::size_t row = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const bool read = std::isfinite(instants_.force_mps2[k](static_cast<Eigen::Index>(axis)));
-      if (!read || instants_.resting[k] != 0) check_.miss(axis);
+      const bool read = std::isfinite(epochs_.force_mps2[k](static_cast<Eigen::Index>(axis)));
+      if (!read || epochs_.resting[k] != 0) check_.miss(axis);
       if (!read) continue;
       const Update<9>& u = step.updates[row++];
       weight = std::min(weight, u.expected / u.variance);
-      if (instants_.resting[k] == 0) check_.add(axis, u.innovation, u.expected, u.used);
+      if (epochs_.resting[k] == 0) check_.add(axis, u.innovation, u.expected, u.used);
     }
     solution_.series.weight[k] = static_cast<float>(weight);
     if (row > 0 && weight < 0.5) ++solution_.down_weighted;
@@ -143,12 +141,12 @@ class FilterNotes {
   [[nodiscard]] Consistency judge() const { return check_.judge(); }
 
  private:
-  static double rate_hz(const TiltInstants& instants) {
-    const double step_s = median(View<double>(instants.step_s).subspan(1)).value_or(1.0);
+  static double rate_hz(const TiltEpochs& epochs) {
+    const double step_s = median(View<double>(epochs.step_s).subspan(1)).value_or(1.0);
     return step_s > 0.0 ? 1.0 / step_s : 1.0;
   }
 
-  const TiltInstants& instants_;
+  const TiltEpochs& epochs_;
   const TiltModel& model_;
   const ForceSpread& spread_;
   TiltSolution& solution_;
@@ -176,17 +174,17 @@ void set_final(const Mat<9>& mean,
 
 }  // namespace
 
-void run_tilt(const TiltInstants& instants,
+void run_tilt(const TiltEpochs& epochs,
               const TiltKnown& known,
               const TiltOptions& options,
               TiltSolution& solution) {
   TiltMotion& motion = *solution.motion;
-  const TiltModel model(instants, known, motion);
+  const TiltModel model(epochs, known, motion);
   Mat<3> rounding = Mat<3>::Zero();
   for (const TiltRest& rest : solution.rests) rounding = rounding.cwiseMax(rest.rounding_m2ps4);
   const ForceSpread spread(options, rounding);
-  motion.log_likelihood = tilt_log_likelihood(instants, known, motion);
-  FilterNotes notes(instants, model, spread, solution);
+  motion.log_likelihood = tilt_log_likelihood(epochs, known, motion);
+  FilterNotes notes(epochs, model, spread, solution);
   std::vector<Mat<9>> path(model.size()), next(model.size());
   // Without gyroscope the Jacobian is that of a slow rotation: sufficient for filtering, not for
   // iteration.

@@ -16,24 +16,24 @@ inline constexpr double usual_rate_noise_radps_rthz = 1e-3;
 [[nodiscard]] double tilt_log_likelihood(const StepOf<TiltModel>& step, int readings);
 
 /// ln L of the accelerometer's innovations in motion, all epochs together.
-[[nodiscard]] double tilt_log_likelihood(const TiltInstants& instants,
+[[nodiscard]] double tilt_log_likelihood(const TiltEpochs& epochs,
                                          const TiltKnown& known,
                                          const TiltMotion& motion);
 
 /// The filter's parameters: those of base_accel, the gyroscope's noise from rests or a typical
 /// value, and without gyroscope the maximum-likelihood angular acceleration.
-[[nodiscard]] TiltMotion fit_tilt_motion(const TiltInstants& instants,
+[[nodiscard]] TiltMotion fit_tilt_motion(const TiltEpochs& epochs,
                                          const TiltKnown& known,
                                          const BaseAccel& accel,
                                          bool gyroscope);
 
 /// The gyroscope's bias in the middle of the recording, given all of it.
-[[nodiscard]] Mat<3> rate_bias_of(const TiltInstants& instants,
+[[nodiscard]] Mat<3> rate_bias_of(const TiltEpochs& epochs,
                                   const TiltKnown& known,
                                   const TiltMotion& motion);
 
 /// Runs filter and smoother and fills series, consistency, final angles and bias.
-void run_tilt(const TiltInstants& instants,
+void run_tilt(const TiltEpochs& epochs,
               const TiltKnown& known,
               const TiltOptions& options,
               TiltSolution& solution);

@@ -20,7 +20,7 @@ constexpr double unread_accel_mps2 = 1.0, unread_time_s = 1.0;
 }  // namespace
 
 LiveTrackFilter::LiveTrackFilter(const LiveTrackSetup& setup,
-                                 const LiveTrackInstant& begin,
+                                 const LiveTrackSample& begin,
                                  const LiveLevel& level)
     : setup_(setup),
       state_(inertial_start({.speed_std_mps = setup.rest_speed_std_mps,
@@ -33,13 +33,13 @@ LiveTrackFilter::LiveTrackFilter(const LiveTrackSetup& setup,
   step_.F.setIdentity();
   step_.filtered = state_.x;
   window_.push(step_);
-  times_s_[instants_++] = begin.time_s;
+  times_s_[epoch_count_++] = begin.time_s;
 }
 
-void LiveTrackFilter::step(const LiveTrackInstant& instant, const LiveLevel& rest) {
-  if (last_.resting && !instant.resting) leave();
-  const bool arrives = !last_.resting && instant.resting;
-  epochs_[1] = epoch_to(instant, rest);
+void LiveTrackFilter::step(const LiveTrackSample& sample, const LiveLevel& rest) {
+  if (last_.resting && !sample.resting) leave();
+  const bool arrives = !last_.resting && sample.resting;
+  epochs_[1] = epoch_to(sample, rest);
   const bool gap = !epochs_[1].resting && epochs_[1].dt_s > setup_.longest_step_s;
   has_gap_ = has_gap_ || gap;
   const InertialAxis model{epochs_, noise_of(epochs_[1], gap)};
@@ -47,30 +47,30 @@ void LiveTrackFilter::step(const LiveTrackInstant& instant, const LiveLevel& res
   if (epochs_[1].resting) gate.huber = resting_huber;
   advance(model, 1, gate, state_, step_);
   window_.push(step_);
-  times_s_[instants_++ % times_s_.size()] = instant.time_s;
-  if (!instant.resting) {
+  times_s_[epoch_count_++ % times_s_.size()] = sample.time_s;
+  if (!sample.resting) {
     moved_s_ += epochs_[1].dt_s;
     accel_square_ +=
-        epochs_[1].dt_s * square(instant.accel_mps2 - state_.x.mean(inertial_axis::bias_mps2));
+        epochs_[1].dt_s * square(sample.accel_mps2 - state_.x.mean(inertial_axis::bias_mps2));
     fastest_mps_ = std::max(fastest_mps_, std::abs(state_.x.mean(velocity_mps)));
   }
-  last_ = instant;
+  last_ = sample;
   if (arrives) arrive(rest);
 }
 
-InertialEpoch LiveTrackFilter::epoch_to(const LiveTrackInstant& instant, const LiveLevel& rest) {
+InertialEpoch LiveTrackFilter::epoch_to(const LiveTrackSample& sample, const LiveLevel& rest) {
   InertialEpoch epoch;
-  const double h = epoch.dt_s = instant.time_s - last_.time_s;
-  if (last_.resting && instant.resting) {
+  const double h = epoch.dt_s = sample.time_s - last_.time_s;
+  if (last_.resting && sample.resting) {
     epoch.resting = true;
-    epoch.level_mps2 = instant.accel_mps2;
+    epoch.level_mps2 = sample.accel_mps2;
     epoch.level_variance = setup_.white_m2ps3 / h;
     return epoch;
   }
-  epoch.velocity_step_mps = 0.5 * h * (last_.accel_mps2 + instant.accel_mps2);
-  epoch.position_step_m = h * h * (last_.accel_mps2 / 3.0 + instant.accel_mps2 / 6.0);
+  epoch.velocity_step_mps = 0.5 * h * (last_.accel_mps2 + sample.accel_mps2);
+  epoch.position_step_m = h * h * (last_.accel_mps2 / 3.0 + sample.accel_mps2 / 6.0);
   epoch.leaves_rest = last_.resting;
-  if (!instant.resting) return epoch;
+  if (!sample.resting) return epoch;
   epoch.arrives_at_rest = true;
   epoch.velocity_std_mps = setup_.rest_speed_std_mps;
   epoch.level_mps2 = rest.mps2;
@@ -158,7 +158,7 @@ LiveTrackRow LiveTrackFilter::row() const {
   row.smoothed_time_s = none;
   row.smoothed_position_m = {none, none};
   if (window_.size() <= window_.lag()) return row;
-  row.smoothed_time_s = times_s_[instants_ % times_s_.size()];
+  row.smoothed_time_s = times_s_[epoch_count_ % times_s_.size()];
   row.smoothed_position_m = position(window_.state(window_.lag()));
   return row;
 }

@@ -28,7 +28,7 @@ struct LiveLevel {
   double moved_m2ps4 = 0.0;
 };
 
-struct LiveTrackInstant {
+struct LiveTrackSample {
   double time_s = 0.0, accel_mps2 = 0.0;
   bool resting = false;
 };
@@ -43,11 +43,11 @@ struct LiveTrackRow {
 class LiveTrackFilter {
  public:
   LiveTrackFilter(const LiveTrackSetup& setup,
-                  const LiveTrackInstant& begin,
+                  const LiveTrackSample& begin,
                   const LiveLevel& level);
 
   /// `rest` is used if the sensor came to rest during the step.
-  void step(const LiveTrackInstant& instant, const LiveLevel& rest);
+  void step(const LiveTrackSample& sample, const LiveLevel& rest);
 
   [[nodiscard]] bool at_rest() const { return last_.resting; }
   [[nodiscard]] double time_s() const { return last_.time_s; }
@@ -57,7 +57,7 @@ class LiveTrackFilter {
   [[nodiscard]] LiveTrackRow row() const;
 
  private:
-  [[nodiscard]] InertialEpoch epoch_to(const LiveTrackInstant& instant, const LiveLevel& rest);
+  [[nodiscard]] InertialEpoch epoch_to(const LiveTrackSample& sample, const LiveLevel& rest);
   [[nodiscard]] InertialNoise noise_of(const InertialEpoch& epoch, bool gap) const;
   [[nodiscard]] Uncertain position(const Gaussian<3>& x) const;
   void leave();
@@ -71,8 +71,8 @@ class LiveTrackFilter {
   Step<3, 3, 3> step_;
   FixedLag<3> window_;
   std::vector<double> times_s_;  ///< of the window's states
-  std::size_t instants_ = 0;
-  LiveTrackInstant last_;
+  std::size_t epoch_count_ = 0;
+  LiveTrackSample last_;
 
   // The motion since the last rest.
   double left_s_ = 0.0, left_variance_m2_ = 0.0, fastest_mps_ = 0.0;

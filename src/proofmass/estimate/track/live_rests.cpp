@@ -34,21 +34,21 @@ LiveTrackRests::LiveTrackRests(const Triad& sensor)
 }
 
 /// Returns true if a block is complete.
-bool LiveTrackRests::take(const LiveInstant& instant) {
-  const Mat<3>& accel = instant.vectors[0];
+bool LiveTrackRests::take(const LiveEpoch& epoch) {
+  const Mat<3>& accel = epoch.vectors[0];
   std::array<double, 3> values{};
   std::size_t axes = 0;
   for (const Eigen::Index i : axes_) values[axes++] = accel(i);
   if (any_) {
     constexpr double remembered = 200.0, longest = 4.0;
-    const double step_s = instant.time_s - last_s_;
+    const double step_s = epoch.time_s - last_s_;
     steps_ = std::min(steps_ + 1.0, remembered);
     step_s_ += (steps_ > 1.0 ? std::min(step_s, longest * step_s_) - step_s_ : step_s) / steps_;
   }
   any_ = true;
-  last_s_ = instant.time_s;
-  if (instant.has(0)) held_.push_back({instant.time_s, accel});
-  return rests_.add(instant.time_s, View<double>(values).first(axes));
+  last_s_ = epoch.time_s;
+  if (epoch.has(0)) held_.push_back({epoch.time_s, accel});
+  return rests_.add(epoch.time_s, View<double>(values).first(axes));
 }
 
 double LiveTrackRests::known_until_s() {

@@ -6,7 +6,7 @@
 
 #include "proofmass/core/recording.hpp"
 #include "proofmass/estimate/filter/gaussian.hpp"
-#include "proofmass/estimate/wheel/live_instants.hpp"
+#include "proofmass/estimate/wheel/live_epochs.hpp"
 #include "proofmass/signal/running_rests.hpp"
 
 // Whether the sensor was at rest at an epoch, as soon as it is determined.
@@ -34,8 +34,8 @@ class LiveTrackRests {
 
   /// Calls visit(const LiveReading&) for those determined by now, in their order.
   template <class Visit>
-  void add(const LiveInstant& instant, Visit&& visit) {
-    if (!take(instant)) return;
+  void add(const LiveEpoch& epoch, Visit&& visit) {
+    if (!take(epoch)) return;
     release(known_until_s(), visit);
   }
   /// Visits the epochs still held; after the last known rest they count as motion.
@@ -50,7 +50,7 @@ class LiveTrackRests {
   [[nodiscard]] std::vector<Note> take_notes();
 
  private:
-  [[nodiscard]] bool take(const LiveInstant& instant);
+  [[nodiscard]] bool take(const LiveEpoch& epoch);
   [[nodiscard]] double known_until_s();
   [[nodiscard]] bool look_at_rest(const signal::RestState& state);
   [[nodiscard]] Mat<3> white_of_rest(const signal::RestState& state) const;

@@ -14,16 +14,16 @@ struct Planar {
 /// Mean over the sensors of `see` applied to each one's last measurement, at every epoch; a sensor
 /// keeps its last measurement until its next. NaN until all have one.
 template <class See, class Visit>
-void at_each_instant(const WheelReadings& readings, See&& see, Visit&& visit) {
+void at_each_epoch(const WheelReadings& readings, See&& see, Visit&& visit) {
   std::array<Planar, 2> seen;
   std::array<bool, 2> ready{};
-  for (std::size_t k = 0; k < readings.instants.size(); ++k) {
+  for (std::size_t k = 0; k < readings.epochs.size(); ++k) {
     bool all = true;
     Planar mean;
     for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
-      const std::int64_t row = readings.instants[k].row[s];
+      const std::int64_t row = readings.epochs[k].row[s];
       const auto at = static_cast<std::size_t>(row);
-      if (row != WheelInstant::no_row && readings.sensors[s].has(at)) {
+      if (row != WheelEpoch::no_row && readings.sensors[s].has(at)) {
         seen[s] = see(s, Planar{readings.sensors[s].u_mps2[at], readings.sensors[s].v_mps2[at]});
         ready[s] = true;
       }
@@ -38,10 +38,10 @@ void at_each_instant(const WheelReadings& readings, See&& see, Visit&& visit) {
 }  // namespace
 
 std::vector<double> atan2_angle(const WheelReadings& readings) {
-  std::vector<double> angle(readings.instants.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> angle(readings.epochs.size(), std::numeric_limits<double>::quiet_NaN());
   const double sin_phase = std::sin(readings.phase_rad), cos_phase = std::cos(readings.phase_rad);
   double last = std::numeric_limits<double>::quiet_NaN();
-  at_each_instant(
+  at_each_epoch(
       readings,
       [&](std::size_t s, Planar f) {
         // Sensor 2 sees the phase θ + μ; rotating its vector back by μ gives what sensor 1 would
@@ -82,10 +82,10 @@ std::vector<double> double_integral_angle(const WheelReadings& readings,
                                           double start_speed_radps) {
   for (Eigen::Index s = 0; s < places.size() / 2; ++s)
     if (places.segment(2 * s, 2).norm() < 1e-6) return {};
-  std::vector<double> angle(readings.instants.size(), start_angle_rad);
+  std::vector<double> angle(readings.epochs.size(), start_angle_rad);
   double speed = start_speed_radps, position = start_angle_rad, last_accel = 0.0;
   bool started = false;
-  at_each_instant(
+  at_each_epoch(
       readings,
       [&](std::size_t s, Planar f) {
         // An angular acceleration α moves a mass at (r_u, r_v) with α (−r_v, r_u): its component
@@ -95,7 +95,7 @@ std::vector<double> double_integral_angle(const WheelReadings& readings,
         return Planar{(f.v * ru - f.u * rv) / (ru * ru + rv * rv), 0.0};
       },
       [&](std::size_t k, Planar accel, bool ready) {
-        const double dt = readings.instants[k].dt_s;
+        const double dt = readings.epochs[k].dt_s;
         const double mean_accel = started ? 0.5 * (last_accel + accel.u) : 0.0;
         position += dt * (speed + 0.5 * dt * mean_accel);
         speed += dt * mean_accel;

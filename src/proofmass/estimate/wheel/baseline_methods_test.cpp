@@ -22,8 +22,8 @@ WheelReadings planar(const Drive& drive, const std::vector<Mount>& mounts, doubl
   }
   for (std::size_t k = 0; k < readings.time_s.size(); ++k) {
     const auto row = static_cast<std::int64_t>(k);
-    readings.instants.push_back(
-        {k == 0 ? 0.0 : 1.0 / rate_hz, {row, mounts.size() > 1 ? row : WheelInstant::no_row}});
+    readings.epochs.push_back(
+        {k == 0 ? 0.0 : 1.0 / rate_hz, {row, mounts.size() > 1 ? row : WheelEpoch::no_row}});
   }
   return readings;
 }

@@ -93,16 +93,16 @@ class AngleColour {
       score += u.h(wheel::angle) * u.innovation / u.variance;
       information_ += u.h(wheel::angle) * u.h(wheel::angle) / u.variance;
     }
-    ++instants_;
+    ++epochs_;
     for (std::size_t i = 0; i < lengths_.size(); ++i) {
       lengths_[i].add(score);
-      if (instants_ % (std::size_t{1} << i) == 0) lengths_[i].end_block();
+      if (epochs_ % (std::size_t{1} << i) == 0) lengths_[i].end_block();
     }
   }
 
   /// Inflation factor for an angle of this variance.
   [[nodiscard]] double factor(double variance_rad2) const {
-    const double each = information_ / static_cast<double>(std::max<std::size_t>(instants_, 1));
+    const double each = information_ / static_cast<double>(std::max<std::size_t>(epochs_, 1));
     const double averaged = std::max(1.0, 1.0 / (each * variance_rad2));
     const auto at = static_cast<std::size_t>(
         std::clamp(std::lround(std::log2(averaged)), 0L, static_cast<long>(lengths_.size()) - 1));
@@ -114,7 +114,7 @@ class AngleColour {
  private:
   std::array<BlockVariance, 11> lengths_{};
   double information_ = 0.0;
-  std::size_t instants_ = 0;
+  std::size_t epochs_ = 0;
 };
 
 }  // namespace proofmass::estimate

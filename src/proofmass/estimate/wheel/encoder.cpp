@@ -283,7 +283,7 @@ EncoderReadings averaged(const EncoderReadings& encoder,
 }
 
 Result<EncoderTrack> encoder_track(const WheelEncoder& encoder, WheelReadings& readings) {
-  PM_EXPECTS(readings.sensors.size() == 1 && readings.instants.size() >= 2);
+  PM_EXPECTS(readings.sensors.size() == 1 && readings.epochs.size() >= 2);
   EncoderTrack out{{}, encoder, {}};
   std::vector<EncoderMotion> motion = motion_of(encoder.fixes, readings.time_s, 0.0);
   if (range_of(motion) < rad_per_turn) {

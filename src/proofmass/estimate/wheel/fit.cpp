@@ -289,7 +289,7 @@ std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack&
   for (const Mat<wheel::moving>& at : track.path.moving)
     fastest = std::max(fastest, std::abs(at(wheel::speed)));
   // A short recording keeps at least 50 averages.
-  const double most = std::clamp(static_cast<double>(readings.instants.size()) / 50.0, 1.0, 64.0);
+  const double most = std::clamp(static_cast<double>(readings.epochs.size()) / 50.0, 1.0, 64.0);
   return static_cast<std::size_t>(std::clamp(0.05 * readings.rate_hz() / fastest, 1.0, most));
 }
 
@@ -314,10 +314,10 @@ void spread_variance(const WheelReadings& averaged, std::size_t each, WheelReadi
   for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
     readings.sensors[s].speed_variance =
         static_cast<double>(each) * averaged.sensors[s].speed_variance;
-    for (std::size_t k = 0; k < readings.instants.size(); ++k) {
-      const std::int64_t row = readings.instants[k].row[s];
-      const std::int64_t block = averaged.instants[k / each].row[s];
-      if (row == WheelInstant::no_row || block == WheelInstant::no_row) continue;
+    for (std::size_t k = 0; k < readings.epochs.size(); ++k) {
+      const std::int64_t row = readings.epochs[k].row[s];
+      const std::int64_t block = averaged.epochs[k / each].row[s];
+      if (row == WheelEpoch::no_row || block == WheelEpoch::no_row) continue;
       readings.sensors[s].variance_m2ps4[static_cast<std::size_t>(row)] =
           static_cast<double>(each) *
           averaged.sensors[s].variance_m2ps4[static_cast<std::size_t>(block)];
@@ -362,7 +362,7 @@ template <int S>
 void widen_at_rest(const WheelReadings& readings, WheelFit& fit) {
   const auto by_constants = [&](std::size_t k) {
     Eigen::VectorXd by = Eigen::VectorXd::Zero(fit.constants.size());
-    if (!readings.instants[k].stands) return by;
+    if (!readings.epochs[k].stands) return by;
     for (int s = 0; s < S; ++s) {
       const double phase =
           s > 0 ? readings.phase_rad + fit.constants(wheel::phase - wheel::first_of(0)) : 0.0;
@@ -381,7 +381,7 @@ void widen_at_rest(const WheelReadings& readings, WheelFit& fit) {
   };
   WheelSeries& series = fit.series;
   for (std::size_t k = 0; k < series.angle_rad.size(); ++k) {
-    if (!readings.instants[k].stands) continue;
+    if (!readings.epochs[k].stands) continue;
     const double more_rad = std_of(by_constants(k));
     add_in_square(series.angle_std_rad[k], more_rad);
     add_in_square(series.filtered_angle_std_rad[k], more_rad);
@@ -459,7 +459,7 @@ WheelFit fit_wheel(WheelReadings& readings,
                    FitDepth depth,
                    const Progress& progress) {
   PM_EXPECTS(!readings.sensors.empty() && readings.sensors.size() <= 2);
-  PM_EXPECTS(readings.instants.size() >= 2 && track.path.moving.size() == readings.instants.size());
+  PM_EXPECTS(readings.epochs.size() >= 2 && track.path.moving.size() == readings.epochs.size());
   if (readings.sensors.size() == 1)
     return fit_sensors<1>(readings, std::move(track), places_prior, depth, progress);
   return fit_sensors<2>(readings, std::move(track), places_prior, depth, progress);

@@ -29,7 +29,7 @@ struct WheelReadings {
   /// vehicle; set by settle_variance().
   bool shakes = false;
   std::vector<double> time_s;
-  std::vector<WheelInstant> instants;
+  std::vector<WheelEpoch> epochs;
   std::vector<PlanarReadings> sensors;
   std::optional<EncoderReadings> encoder{};
 

@@ -66,9 +66,9 @@ class GravityFit {
   static void for_each_reading(const WheelReadings& readings,
                                const std::vector<EncoderMotion>& motion,
                                const Function& f) {
-    for (std::size_t k = 0; k < readings.instants.size(); ++k) {
-      const std::int64_t row = readings.instants[k].row[0];
-      if (row == WheelInstant::no_row || !is_steady(motion[k])) continue;
+    for (std::size_t k = 0; k < readings.epochs.size(); ++k) {
+      const std::int64_t row = readings.epochs[k].row[0];
+      if (row == WheelEpoch::no_row || !is_steady(motion[k])) continue;
       const auto at = static_cast<std::size_t>(row);
       if (readings.sensors[0].has(at))
         f(k, Mat<2>(readings.sensors[0].u_mps2[at], readings.sensors[0].v_mps2[at]));

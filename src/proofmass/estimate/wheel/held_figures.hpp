@@ -271,7 +271,7 @@ void add_held_figures(const Settled<S>& settled,
                       WheelFit& fit) {
   WheelFit with = fit;
   bool added = HeldFigures<S>(averaged, settled, averaged_path).add_to(with);
-  if (!added && averaged.instants.size() < readings.instants.size()) {
+  if (!added && averaged.epochs.size() < readings.epochs.size()) {
     with = fit;
     added = HeldFigures<S>(readings, settled, path).add_to(with);
   }

@@ -14,7 +14,7 @@ namespace {
 /// Above this share of unexplained measurements no wheel rotating in gravity is visible.
 constexpr double not_a_wheel = 0.5;
 /// Rows of two sensors this close share one epoch: 50 rad/s move the phase by 0.25 mrad meanwhile.
-constexpr double same_instant_s = 5e-6;
+constexpr double same_epoch_s = 5e-6;
 
 /// A given pole is accurate to a tenth, as resistors and capacitors are. Otherwise it is
 /// log-uniform between two corners.
@@ -58,15 +58,15 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
     for (std::size_t s = 0; s < sensors.size(); ++s) has[s] = skip_unusable(s);
     if (!has[0] && !has[1]) break;
     const double t = has[0] && has[1] ? std::min(time_of(0), time_of(1)) : time_of(has[0] ? 0 : 1);
-    WheelInstant instant;
-    instant.dt_s = readings.time_s.empty() ? 0.0 : t - readings.time_s.back();
+    WheelEpoch epoch;
+    epoch.dt_s = readings.time_s.empty() ? 0.0 : t - readings.time_s.back();
     for (std::size_t s = 0; s < sensors.size(); ++s)
-      if (has[s] && time_of(s) - t < same_instant_s)
-        instant.row[s] = static_cast<std::int64_t>(next[s]++);
+      if (has[s] && time_of(s) - t < same_epoch_s)
+        epoch.row[s] = static_cast<std::int64_t>(next[s]++);
     readings.time_s.push_back(t);
-    readings.instants.push_back(instant);
+    readings.epochs.push_back(epoch);
   }
-  if (!readings.instants.empty()) mark_standing(readings);
+  if (!readings.epochs.empty()) mark_standing(readings);
   return readings;
 }
 
@@ -165,7 +165,7 @@ Result<Single> fit_single(const WheelSensor& sensor,
                           const WheelOptions& options) {
   Single single{std::move(prepared), {}, {}, {}};
   single.readings = merge({&sensor}, {&single.prepared}, 0.0, options);
-  if (single.readings.instants.size() < 10)
+  if (single.readings.epochs.size() < 10)
     return Error{Errc::too_few_samples, sensor.name + ": fewer than 10 usable rows"};
   if (mean_square(single.readings.sensors.front()) < square(0.05 * standard_gravity_mps2))
     return no_gravity_in(sensor);

@@ -33,7 +33,7 @@ WheelModel<S> wheel_model(const WheelReadings& readings, const WheelNoise& noise
   model.delay_s = readings.delay_s.value;
   model.orders = readings.orders;
   model.noise = noise;
-  model.instants = &readings.instants;
+  model.epochs = &readings.epochs;
   model.time_s = &readings.time_s;
   if (readings.encoder) model.encoder = &*readings.encoder;
   for (std::size_t s = 0; s < readings.sensors.size(); ++s) {

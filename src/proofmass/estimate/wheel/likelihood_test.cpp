@@ -47,7 +47,7 @@ struct Ramp {
       const double t = 0.01 * k;
       readings.time_s.push_back(t);
       path.moving.emplace_back(0.0, from_radps + accel_radps2 * t, accel_radps2, 0.0);
-      readings.instants.push_back({k == 0 ? 0.0 : 0.01, {k, WheelInstant::no_row}});
+      readings.epochs.push_back({k == 0 ? 0.0 : 0.01, {k, WheelEpoch::no_row}});
     }
     readings.sensors.push_back({.u_mps2 = {}, .v_mps2 = {}, .variance_m2ps4 = {1e-4, 1e-4}});
   }
@@ -63,7 +63,7 @@ TEST(WheelLevers, OfASteadyWheelAreItsSquaredSpeedAndNoAcceleration) {
 
 // The mean of (ω + α t)² over a window centred at an epoch is ω² + α² h² / 3; one more row on one
 // side changes it by ω α times a step.
-TEST(WheelLevers, OfARampAreMeansOverTheTurnAboutEachInstant) {
+TEST(WheelLevers, OfARampAreMeansOverTheTurnAboutEachEpoch) {
   const Ramp ramp(10.0, 30.0);
   const WheelLevers levers = levers_of(ramp.path, ramp.readings);
   for (std::size_t k = 0; k < levers.size(); ++k) {
@@ -127,7 +127,7 @@ struct SlowWheel {
     for (int k = 0; k < 2400; ++k) {
       const double t = k / rate_hz, angle = speed_radps * t;
       readings.time_s.push_back(t);
-      readings.instants.push_back({k == 0 ? 0.0 : 1.0 / rate_hz, {k, WheelInstant::no_row}});
+      readings.epochs.push_back({k == 0 ? 0.0 : 1.0 / rate_hz, {k, WheelEpoch::no_row}});
       sensor.u_mps2.push_back(readings.gravity_mps2 * std::sin(angle) + noise_mps2 * normal());
       sensor.v_mps2.push_back(readings.gravity_mps2 * std::cos(angle) + noise_mps2 * normal());
       sensor.variance_m2ps4.push_back(1.0);
@@ -178,11 +178,11 @@ TEST(MarkStanding, IsAWheelWhoseReadingsKeepTheirValues) {
     sensor.v_mps2[k] = 9.0 + SlowWheel::noise_mps2 * normal();
   }
   mark_standing(slow.readings);
-  const auto& instants = slow.readings.instants;
-  EXPECT_TRUE(std::none_of(instants.begin(), instants.begin() + 1000,
-                           [](const WheelInstant& instant) { return instant.stands; }));
+  const auto& epochs = slow.readings.epochs;
+  EXPECT_TRUE(std::none_of(epochs.begin(), epochs.begin() + 1000,
+                           [](const WheelEpoch& epoch) { return epoch.stands; }));
   // 1400 epochs at rest, minus the interval in which the wheel stops and a false-alarm rate of 5 %.
-  EXPECT_GE(std::ranges::count(instants, true, &WheelInstant::stands), 1260);
+  EXPECT_GE(std::ranges::count(epochs, true, &WheelEpoch::stands), 1260);
 }
 
 // At 0.1 rad/s, a turn in a minute, a wheel moves.
@@ -196,14 +196,14 @@ TEST(MarkStanding, IgnoresASlowWheel) {
     sensor.v_mps2[k] = 9.8 * std::cos(angle) + SlowWheel::noise_mps2 * normal();
   }
   mark_standing(slow.readings);
-  EXPECT_TRUE(std::ranges::none_of(slow.readings.instants, &WheelInstant::stands));
+  EXPECT_TRUE(std::ranges::none_of(slow.readings.epochs, &WheelEpoch::stands));
 }
 
 TEST(WheelReadings, RateIsThatOfRowsWhichArriveInPackets) {
   WheelReadings readings;
   for (int k = 0; k < 2000; ++k)
     // Ten rows every 25 ms, ten microseconds apart; one gap of a minute.
-    readings.instants.push_back({k % 10 > 0 ? 1e-5 : k == 1000 ? 60.0 : 0.025 - 9e-5});
+    readings.epochs.push_back({k % 10 > 0 ? 1e-5 : k == 1000 ? 60.0 : 0.025 - 9e-5});
   EXPECT_NEAR(readings.rate_hz(), 400.0, 4.0);
 }
 
@@ -223,7 +223,7 @@ struct RipplingWheel {
       const double speed = speed_radps * (1.0 + share * std::cos(phase));
       const double accel = -square(speed_radps) * share * order * std::sin(phase);
       readings.time_s.push_back(k / rate_hz);
-      readings.instants.push_back({k == 0 ? 0.0 : 1.0 / rate_hz, {k, WheelInstant::no_row}});
+      readings.epochs.push_back({k == 0 ? 0.0 : 1.0 / rate_hz, {k, WheelEpoch::no_row}});
       sensor.u_mps2.push_back(readings.gravity_mps2 * std::sin(angle) - square(speed) * radius_m +
                               0.03 * normal());
       sensor.v_mps2.push_back(readings.gravity_mps2 * std::cos(angle) + accel * radius_m +

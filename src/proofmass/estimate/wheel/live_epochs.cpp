@@ -1,4 +1,4 @@
-#include "proofmass/estimate/wheel/live_instants.hpp"
+#include "proofmass/estimate/wheel/live_epochs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -46,7 +46,7 @@ Status check_live_times(const LiveTimes& times) {
   if (sensible) return Done{};
   return Error{Errc::invalid_argument,
                "a live estimate takes a start of 0.5 s to 20 s, a lag of 0 s to 10 s and 20 Hz to "
-               "10 kHz of instants"};
+               "10 kHz of epochs"};
 }
 
 std::string at_second(double time_s) {
@@ -56,15 +56,15 @@ std::string at_second(double time_s) {
   return {text.data(), end.ptr};
 }
 
-LiveInstants::LiveInstants(std::vector<LiveVector> vectors, const LiveClock& clock)
+LiveEpochs::LiveEpochs(std::vector<LiveVector> vectors, const LiveClock& clock)
     : vectors_(std::move(vectors)), clock_(clock) {
   PM_EXPECTS(!vectors_.empty() && vectors_.size() <= most_live_vectors);
   PM_EXPECTS(clock.most_rate_hz > 0.0 && clock.rate_hz >= 0.0);
   if (clock_.rate_hz > 0.0) each_ = samples_of_mean(clock_);
-  for (Mat<3>& vector : instant_.vectors) vector.setConstant(std::nan(""));
+  for (Mat<3>& vector : epoch_.vectors) vector.setConstant(std::nan(""));
 }
 
-Status LiveInstants::check(const Block& samples) const {
+Status LiveEpochs::check(const Block& samples) const {
   for (const LiveVector& vector : vectors_)
     for (const auto& channel : {vector.channels.x, vector.channels.y, vector.channels.z})
       if (channel && *channel >= samples.channels.size())
@@ -76,7 +76,7 @@ Status LiveInstants::check(const Block& samples) const {
   return Done{};
 }
 
-bool LiveInstants::take(const Block& samples, std::size_t row) {
+bool LiveEpochs::take(const Block& samples, std::size_t row) {
   const double time_s = samples.stamps_s.empty()
                             ? static_cast<double>(samples.first + row) / clock_.rate_hz
                             : samples.stamps_s[row];
@@ -94,7 +94,7 @@ bool LiveInstants::take(const Block& samples, std::size_t row) {
 
 /// Whether a stamp ascends; otherwise the sample is dropped, until there are so many that the clock
 /// must have been set back.
-bool LiveInstants::follows(double time_s) {
+bool LiveEpochs::follows(double time_s) {
   if (std::isfinite(time_s) && time_s > last_time_s_) {
     behind_ = 0;
     return true;
@@ -116,7 +116,7 @@ bool LiveInstants::follows(double time_s) {
   return true;
 }
 
-void LiveInstants::learn_rate(double time_s) {
+void LiveEpochs::learn_rate(double time_s) {
   if (rows_seen_ == 0 || anew_) {
     first_time_s_ = time_s;
     rows_seen_ = 0;
@@ -126,7 +126,7 @@ void LiveInstants::learn_rate(double time_s) {
   each_ = samples_of_mean(clock_);
 }
 
-void LiveInstants::sum_up(const Block& samples, std::size_t row, double time_s) {
+void LiveEpochs::sum_up(const Block& samples, std::size_t row, double time_s) {
   if (in_mean_++ == 0) {
     first_in_mean_s_ = time_s;
     mean_is_anew_ = std::exchange(anew_, false);
@@ -145,15 +145,15 @@ void LiveInstants::sum_up(const Block& samples, std::size_t row, double time_s) 
   }
 }
 
-bool LiveInstants::close() {
+bool LiveEpochs::close() {
   if (in_mean_ == 0) return false;
-  instant_.anew = mean_is_anew_;
-  instant_.time_s = first_in_mean_s_ + time_sum_s_ / static_cast<double>(in_mean_);
+  epoch_.anew = mean_is_anew_;
+  epoch_.time_s = first_in_mean_s_ + time_sum_s_ / static_cast<double>(in_mean_);
   for (std::size_t i = 0; i < vectors_.size(); ++i) {
     if (sums_[i].count > 0.0)
-      instant_.vectors[i] = sums_[i].total / sums_[i].count;
+      epoch_.vectors[i] = sums_[i].total / sums_[i].count;
     else
-      instant_.vectors[i].setConstant(std::nan(""));
+      epoch_.vectors[i].setConstant(std::nan(""));
     sums_[i] = {};
   }
   time_sum_s_ = 0.0;
@@ -161,7 +161,7 @@ bool LiveInstants::close() {
   return true;
 }
 
-std::vector<Note> LiveInstants::take_notes() {
+std::vector<Note> LiveEpochs::take_notes() {
   for (std::size_t i = 0; i < vectors_.size(); ++i) {
     const Rejected said = std::exchange(rejected_[i], {});
     if (said.count == 0) continue;

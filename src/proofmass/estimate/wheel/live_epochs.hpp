@@ -23,7 +23,7 @@ struct LiveVector {
 
 inline constexpr std::size_t most_live_vectors = 4;
 
-struct LiveInstant {
+struct LiveEpoch {
   double time_s = 0.0;
   bool anew = false;  ///< the clock was set back: earlier epochs are on another time line
   /// m/s² and rad/s, an axis without channel is 0; NaN without a plausible measurement.
@@ -40,23 +40,23 @@ struct LiveClock {
 /// Screens samples, and averages them so that there are at most `most_rate_hz` epochs a second: at
 /// that rate and below every sample is an epoch, available immediately. A mean ends where samples
 /// are missing. The result does not depend on the block size.
-class LiveInstants {
+class LiveEpochs {
  public:
-  LiveInstants(std::vector<LiveVector> vectors, const LiveClock& clock);
+  LiveEpochs(std::vector<LiveVector> vectors, const LiveClock& clock);
 
-  /// Calls visit(const LiveInstant&) for each complete epoch. Errors: invalid_argument (channels
+  /// Calls visit(const LiveEpoch&) for each complete epoch. Errors: invalid_argument (channels
   /// that the block lacks, neither time stamps nor a known rate).
   template <class Visit>
   [[nodiscard]] Status add(const Block& samples, Visit&& visit) {
     if (auto status = check(samples); !status) return status;
     for (std::size_t row = 0; row < samples.rows(); ++row)
-      if (take(samples, row)) visit(static_cast<const LiveInstant&>(instant_));
+      if (take(samples, row)) visit(static_cast<const LiveEpoch&>(epoch_));
     return Done{};
   }
   /// The last mean, with fewer samples than the others.
   template <class Visit>
   void finish(Visit&& visit) {
-    if (close()) visit(static_cast<const LiveInstant&>(instant_));
+    if (close()) visit(static_cast<const LiveEpoch&>(epoch_));
   }
 
   /// Notes on measurements dropped since the last call.
@@ -94,7 +94,7 @@ class LiveInstants {
   double last_behind_s_ = 0.0;  ///< of the stamps earlier than the last
   std::size_t behind_ = 0;      ///< number of those that ascend
   bool anew_ = false, mean_is_anew_ = false;
-  LiveInstant instant_;
+  LiveEpoch epoch_;
 
   std::array<Rejected, most_live_vectors> rejected_{};
   Rejected backwards_;

@@ -15,7 +15,7 @@ constexpr double stretch_s = 1.0;
 constexpr double rival_factor = 3.1622776601683795;
 /// A smoothed mean NIS beyond this is significant: the motion exceeds the noise model.
 constexpr double surprising = 4.0;
-constexpr double surprise_instants = 10.0;
+constexpr double surprise_epochs = 10.0;
 /// An innovation beyond half of gravity, squared, is a lost phase rather than vibration of the hub.
 constexpr double most_shaking2 = 0.25;
 /// White jerk of a wheel turned by hand, rad²/s⁵: the level to which the noise is raised at once.
@@ -49,20 +49,20 @@ double log_likelihood_of(const Step& step) {
 
 template <int S>
 LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelStart& start,
-                                    std::size_t lag_instants,
+                                    std::size_t lag_epochs,
                                     double alignment_std_rad)
     : planes_(start.planes),
       variance_m2ps4_(start.variance_m2ps4),
       alignment_variance_rad2_(alignment_std_rad * alignment_std_rad),
       delay_std_s_(start.delay_s.std),
-      window_(lag_instants),
-      window_time_s_(lag_instants + 1),
-      window_places_(lag_instants + 1) {
+      window_(lag_epochs),
+      window_time_s_(lag_epochs + 1),
+      window_places_(lag_epochs + 1) {
   now_.gravity_mps2 = start.gravity_mps2;
   now_.rolling_radius_m.value = start.rolling_radius_m;
   now_.phase_rad = start.phase_rad;
   now_.delay_s = start.delay_s;
-  now_.instants.assign(2, {0.0, {0, S == 2 ? 0 : WheelInstant::no_row}});
+  now_.epochs.assign(2, {0.0, {0, S == 2 ? 0 : WheelEpoch::no_row}});
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s)
     now_.sensors.push_back({{0.0}, {0.0}, {variance_m2ps4_[s]}});
   model_ = wheel_model<S>(now_, start.noise);
@@ -102,11 +102,11 @@ void LiveWheelFilter<S>::seat(int place) {
 }
 
 template <int S>
-void LiveWheelFilter<S>::read(const LiveInstant& instant) {
-  now_.instants[1].dt_s = instants_ == 0 ? 0.0 : instant.time_s - time_s_;
-  time_s_ = instant.time_s;
+void LiveWheelFilter<S>::read(const LiveEpoch& epoch) {
+  now_.epochs[1].dt_s = epochs_ == 0 ? 0.0 : epoch.time_s - time_s_;
+  time_s_ = epoch.time_s;
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
-    const Mat<3>& f = instant.vectors[s];
+    const Mat<3>& f = epoch.vectors[s];
     const Axis &u = planes_[s].u, &v = planes_[s].v;
     now_.sensors[s].u_mps2[0] = f(0) * u[0] + f(1) * u[1] + f(2) * u[2];
     now_.sensors[s].v_mps2[0] = f(0) * v[0] + f(1) * v[1] + f(2) * v[2];
@@ -119,7 +119,7 @@ template <int S>
 void LiveWheelFilter<S>::set_variance() {
   const double w = main_.x.mean(wheel::speed);
   const double accel =
-      main_.x.cov(wheel::accel, wheel::accel) + model_.noise.jerk_psd * now_.instants[1].dt_s;
+      main_.x.cov(wheel::accel, wheel::accel) + model_.noise.jerk_psd * now_.epochs[1].dt_s;
   const double both = accel + 4.0 * w * w * main_.x.cov(wheel::speed, wheel::speed);
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
     const auto at = static_cast<Eigen::Index>(2 * s);
@@ -130,7 +130,7 @@ void LiveWheelFilter<S>::set_variance() {
 
 template <int S>
 void LiveWheelFilter<S>::advance_all() {
-  const std::size_t k = instants_ == 0 ? 0 : 1;
+  const std::size_t k = epochs_ == 0 ? 0 : 1;
   for (std::size_t m = 0; m < moved_.size(); ++m) {
     Moved& moved = moved_[m];
     if (std::abs(moved.state.x.mean(wheel::angle) - main_.x.mean(wheel::angle)) > 1.0)
@@ -149,18 +149,18 @@ void LiveWheelFilter<S>::advance_all() {
   }
   advance(model_, k, live_gate, main_, step_);
   main_log_likelihood_ += log_likelihood_of(step_);
-  const std::size_t at = instants_ % window_time_s_.size();
+  const std::size_t at = epochs_ % window_time_s_.size();
   window_.push(step_, model_.active());
   window_time_s_[at] = time_s_;
   expect();
   window_places_[at] = places_variance();
-  ++instants_;
+  ++epochs_;
 }
 
 template <int S>
-void LiveWheelFilter<S>::step(const LiveInstant& instant) {
-  read(instant);
-  if (instants_ == 0) first_time_s_ = stretch_start_s_ = time_s_;
+void LiveWheelFilter<S>::step(const LiveEpoch& epoch) {
+  read(epoch);
+  if (epochs_ == 0) first_time_s_ = stretch_start_s_ = time_s_;
   if (time_s_ > first_time_s_ + 1.0 && predicted_std_rad() > lost_std_rad) lost_ = true;
   set_variance();
   advance_all();
@@ -200,19 +200,19 @@ void LiveWheelFilter<S>::judge() {
       noise_[s].readings += 1.0;
     }
   }
-  since_loosened_s_ += now_.instants[1].dt_s;
+  since_loosened_s_ += now_.epochs[1].dt_s;
   if (channel == 0) {
     nis_ = std::numeric_limits<double>::quiet_NaN();
     return;
   }
   nis_ /= channel;
-  recent_innovation2_ += (innovation2 / channel - recent_innovation2_) / surprise_instants;
+  recent_innovation2_ += (innovation2 / channel - recent_innovation2_) / surprise_epochs;
   notice_surprise(clipped / channel);
 }
 
 template <int S>
 void LiveWheelFilter<S>::notice_surprise(double mean_nis) {
-  surprise_ += (mean_nis - surprise_) / surprise_instants;
+  surprise_ += (mean_nis - surprise_) / surprise_epochs;
   if (surprise_ < surprising) return;
   surprise_ = 1.0;
   loosened_ = since_loosened_s_ < 1.0 ? loosened_ + 1 : 1;
@@ -275,7 +275,7 @@ LiveWheelRow LiveWheelFilter<S>::row() const {
         by_places + (i == wheel::angle ? alignment_variance_rad2_ + late * late : 0.0);
     return Uncertain{x.mean(i), std::sqrt(std::max(x.cov(i, i), 0.0) + more)};
   };
-  const Mat<2>& by_places = window_places_[(instants_ - 1) % window_places_.size()];
+  const Mat<2>& by_places = window_places_[(epochs_ - 1) % window_places_.size()];
   const Gaussian<2>& now = window_.state(0);
   LiveWheelRow row{.angle_rad = of(now, wheel::angle, by_places(0)),
                    .speed_radps = of(now, wheel::speed, by_places(1))};
@@ -285,7 +285,7 @@ LiveWheelRow LiveWheelFilter<S>::row() const {
     row.smoothed_angle_rad = row.smoothed_speed_radps = {none, none};
     return row;
   }
-  const std::size_t oldest = instants_ % window_time_s_.size();
+  const std::size_t oldest = epochs_ % window_time_s_.size();
   row.smoothed_time_s = window_time_s_[oldest];
   const Gaussian<2>& then = window_.state(window_.lag());
   row.smoothed_angle_rad = of(then, wheel::angle, window_places_[oldest](0));

@@ -26,12 +26,12 @@ class LiveWheelFilter {
  public:
   static constexpr int states = wheel::states(S), first_place = wheel::places(S);
 
-  LiveWheelFilter(const LiveWheelStart& start, std::size_t lag_instants, double alignment_std_rad);
+  LiveWheelFilter(const LiveWheelStart& start, std::size_t lag_epochs, double alignment_std_rad);
   LiveWheelFilter(const LiveWheelFilter&) = delete;
   LiveWheelFilter& operator=(const LiveWheelFilter&) = delete;
 
   /// Processes one epoch. Does not allocate.
-  void step(const LiveInstant& instant);
+  void step(const LiveEpoch& epoch);
   /// Sets the sensors' distance from the axle, once the initial samples have been filtered.
   void use_radius(double radius_m);
   /// Whether the lever arms are known well enough for the speed to change.
@@ -68,7 +68,7 @@ class LiveWheelFilter {
 
   void narrow_constants(const Eigen::MatrixXd& found_cov);
   void seat(int place);
-  void read(const LiveInstant& instant);
+  void read(const LiveEpoch& epoch);
   void set_variance();
   void advance_all();
   void judge();
@@ -87,7 +87,7 @@ class LiveWheelFilter {
   std::vector<WheelPlane> planes_;
   WheelReadings now_;  ///< two epochs: 0 the first, 1 any later; each sensor has one row
   Model model_;
-  std::size_t instants_ = 0;
+  std::size_t epochs_ = 0;
   double time_s_ = 0.0;
   std::array<double, 2> variance_m2ps4_;  ///< of each sensor's measurements
   double alignment_variance_rad2_ = 0.0, delay_std_s_ = 0.0;

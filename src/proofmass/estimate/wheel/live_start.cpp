@@ -12,27 +12,27 @@ namespace {
 /// Maximum rate of the initialisation: sufficient for the fastest wheel.
 constexpr double seek_rate_hz = 200.0;
 
-double rate_of(const std::vector<LiveInstant>& instants) {
-  const double span_s = instants.back().time_s - instants.front().time_s;
-  return static_cast<double>(instants.size() - 1) / span_s;
+double rate_of(const std::vector<LiveEpoch>& epochs) {
+  const double span_s = epochs.back().time_s - epochs.front().time_s;
+  return static_cast<double>(epochs.size() - 1) / span_s;
 }
 
 /// One sensor's samples, averaged over `each` epochs; a mean with a missing sample is missing.
-WheelSensor sensor_of(const std::vector<LiveInstant>& instants,
+WheelSensor sensor_of(const std::vector<LiveEpoch>& epochs,
                       std::size_t index,
                       const Triad& channels,
                       std::size_t each) {
   WheelSensor sensor;
   sensor.name = channels.name;
   const std::size_t axes = channels.z ? 3 : 2;
-  for (std::size_t first = 0; first + each <= instants.size(); first += each) {
+  for (std::size_t first = 0; first + each <= epochs.size(); first += each) {
     double time_s = 0.0;
     Mat<3> force = Mat<3>::Zero();
     for (std::size_t k = first; k < first + each; ++k) {
-      time_s += (instants[k].time_s - instants[first].time_s) / static_cast<double>(each);
-      force += instants[k].vectors[index] / static_cast<double>(each);
+      time_s += (epochs[k].time_s - epochs[first].time_s) / static_cast<double>(each);
+      force += epochs[k].vectors[index] / static_cast<double>(each);
     }
-    sensor.time_s.push_back(instants[first].time_s + time_s);
+    sensor.time_s.push_back(epochs[first].time_s + time_s);
     for (std::size_t axis = 0; axis < axes; ++axis)
       sensor.accel_mps2[axis].push_back(force(static_cast<Eigen::Index>(axis)));
   }
@@ -55,16 +55,16 @@ std::vector<Note> notes_of(const std::vector<WheelSensor>& sensors,
 
 }  // namespace
 
-Result<LiveWheelStart> find_wheel(const std::vector<LiveInstant>& instants,
+Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
                                   const LiveWheelOptions& options) {
   const std::size_t count = options.sensors.size();
-  if (instants.size() < 10)
+  if (epochs.size() < 10)
     return Error{Errc::too_few_samples, "fewer than 10 samples to find a wheel in"};
-  const double rate_hz = rate_of(instants);
+  const double rate_hz = rate_of(epochs);
   const auto each = static_cast<std::size_t>(std::max(1.0, std::ceil(rate_hz / seek_rate_hz)));
   std::vector<WheelSensor> sensors;
   for (std::size_t s = 0; s < count; ++s)
-    sensors.push_back(sensor_of(instants, s, options.sensors[s], each));
+    sensors.push_back(sensor_of(epochs, s, options.sensors[s], each));
   WheelOptions wheel = options.wheel;
   wheel.clocks_shared = true;
   wheel.radius_m.reset();  // used better by the filter itself

@@ -6,7 +6,7 @@
 #include "proofmass/core/result.hpp"
 #include "proofmass/estimate/live_wheel.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
-#include "proofmass/estimate/wheel/live_instants.hpp"
+#include "proofmass/estimate/wheel/live_epochs.hpp"
 #include "proofmass/estimate/wheel/plane.hpp"
 
 // Initialisation of a wheel from the first seconds.
@@ -30,7 +30,7 @@ struct LiveWheelStart {
 };
 
 /// Initialisation by estimate_wheel()'s methods. Errors: as for estimate_wheel().
-[[nodiscard]] Result<LiveWheelStart> find_wheel(const std::vector<LiveInstant>& instants,
+[[nodiscard]] Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
                                                 const LiveWheelOptions& options);
 
 }  // namespace proofmass::estimate

@@ -168,7 +168,7 @@ struct WheelPath {
 using WheelLevers = std::vector<Mat<2>>;
 
 /// One epoch of the merged time line and the row of each sensor measured then.
-struct WheelInstant {
+struct WheelEpoch {
   static constexpr std::int64_t no_row = -1;
   double dt_s = 0.0;  ///< since the previous epoch
   std::array<std::int64_t, 2> row{no_row, no_row};
@@ -195,7 +195,7 @@ struct WheelModel {
   double phase_rad = 0.0;         ///< of sensor 2; its state is the difference from this
   double delay_s = 0.0;           ///< τ, of both sensors' filters
   WheelNoise noise;
-  const std::vector<WheelInstant>* instants = nullptr;
+  const std::vector<WheelEpoch>* epochs = nullptr;
   std::array<const PlanarReadings*, 2> readings{};
   const EncoderReadings* encoder = nullptr;
   const WheelPath* about = nullptr;  ///< nullptr: the plain extended filter
@@ -218,7 +218,7 @@ struct WheelModel {
   Mat<2 * Sensors> warm_up_mps2 = Mat<2 * Sensors>::Zero();
   const std::vector<double>* time_s = nullptr;  ///< of each epoch
 
-  [[nodiscard]] std::size_t size() const { return instants->size(); }
+  [[nodiscard]] std::size_t size() const { return epochs->size(); }
   [[nodiscard]] int active() const {
     if (!places_held) return states;
     if (encoder != nullptr) return wheel::places(Sensors);
@@ -276,7 +276,7 @@ struct WheelModel {
   }
 
   [[nodiscard]] Transition<states, moving> transition(const State& x, std::size_t k) const {
-    const double t = (*instants)[k].dt_s, t2 = t * t, t3 = t2 * t, t4 = t2 * t2, t5 = t4 * t;
+    const double t = (*epochs)[k].dt_s, t2 = t * t, t3 = t2 * t, t4 = t2 * t2, t5 = t4 * t;
     const double t6 = t3 * t3, t7 = t4 * t3;
     Transition<states, moving> step;
     // clang-format off
@@ -313,15 +313,15 @@ struct WheelModel {
 
   /// Whether epoch k has measurements of a sensor.
   [[nodiscard]] bool has_readings(std::size_t sensor, std::size_t k) const {
-    const std::int64_t row = (*instants)[k].row[sensor];
-    return row != WheelInstant::no_row && readings[sensor]->has(static_cast<std::size_t>(row));
+    const std::int64_t row = (*epochs)[k].row[sensor];
+    return row != WheelEpoch::no_row && readings[sensor]->has(static_cast<std::size_t>(row));
   }
 
   /// Whether epoch k has the gyroscope measurement of a sensor.
   [[nodiscard]] bool has_speed(std::size_t sensor, std::size_t k) const {
     if (!with_gyro || readings[sensor]->speed_radps.empty()) return false;
     return !std::isnan(
-        readings[sensor]->speed_radps[static_cast<std::size_t>((*instants)[k].row[sensor])]);
+        readings[sensor]->speed_radps[static_cast<std::size_t>((*epochs)[k].row[sensor])]);
   }
 
   /// Whether epoch k has an angle of the encoder.
@@ -337,7 +337,7 @@ struct WheelModel {
       const auto index = static_cast<std::size_t>(s);
       if (!has_readings(index, k)) continue;
       const PlanarReadings& sensor = *readings[index];
-      const auto at = static_cast<std::size_t>((*instants)[k].row[index]);
+      const auto at = static_cast<std::size_t>((*epochs)[k].row[index]);
       const auto first = static_cast<std::size_t>(out.count);
       const Mat<2> lever =
           levers == nullptr ? Mat<2>(now.speed * now.speed, now.accel) : (*levers)[k];
@@ -366,7 +366,7 @@ struct WheelModel {
         auto& row = out.rows[static_cast<std::size_t>(i)];
         row.predicted += row.h.dot(x - at_state);
       }
-    if ((*instants)[k].stands && (*instants)[k].dt_s > 0.0) read_standing(x, k, out);
+    if ((*epochs)[k].stands && (*epochs)[k].dt_s > 0.0) read_standing(x, k, out);
   }
 
   /// Covariance reset of the motion, not of the sensors' constants: called after the gate has
@@ -401,7 +401,7 @@ struct WheelModel {
     row.predicted = x(wheel::speed);
     row.value = 0.0;
     row.variance =
-        square(standing_speed_radps) * std::max(1.0, standing_stretch_s / (*instants)[k].dt_s);
+        square(standing_speed_radps) * std::max(1.0, standing_stretch_s / (*epochs)[k].dt_s);
   }
 
   void read_gyro(const State& x, const Motion& now, int s, Readings<states, channels>& out) const {

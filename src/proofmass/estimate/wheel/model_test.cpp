@@ -22,12 +22,12 @@ int place_of(int sensors, int s) {
 
 /// A model with one epoch that has measurements of every sensor.
 template <int S>
-struct OneInstant {
-  std::vector<WheelInstant> instants{WheelInstant{0.01, {0, S == 2 ? 0 : WheelInstant::no_row}}};
+struct OneEpoch {
+  std::vector<WheelEpoch> epochs{WheelEpoch{0.01, {0, S == 2 ? 0 : WheelEpoch::no_row}}};
   std::array<PlanarReadings, 2> readings;
   WheelModel<S> model;
 
-  OneInstant(double rolling_radius_m, double phase_rad) {
+  OneEpoch(double rolling_radius_m, double phase_rad) {
     for (std::size_t s = 0; s < S; ++s) {
       readings[s] = {{1.0}, {2.0}, {0.25}};
       model.readings[s] = &readings[s];
@@ -35,7 +35,7 @@ struct OneInstant {
     model.gravity_mps2 = 9.8;
     model.rolling_radius_m = rolling_radius_m;
     model.phase_rad = phase_rad;
-    model.instants = &instants;
+    model.epochs = &epochs;
   }
 
   [[nodiscard]] Readings<WheelModel<S>::states, WheelModel<S>::channels> at(
@@ -69,20 +69,20 @@ State<S> any_state(Normal& normal) {
 }
 
 template <int S>
-void expect_jacobian_of_differences(const OneInstant<S>& instant, int readings) {
+void expect_jacobian_of_differences(const OneEpoch<S>& epoch, int readings) {
   Normal normal(17);
   for (int trial = 0; trial < 50; ++trial) {
     auto x = any_state<S>(normal);
-    if (instant.model.with_ripple)
+    if (epoch.model.with_ripple)
       for (int i = wheel::ripple(S); i < wheel::places(S); ++i) x(i) = 0.02 * normal();
-    const auto here = instant.at(x);
+    const auto here = epoch.at(x);
     ASSERT_EQ(here.count, readings);
     for (int j = 0; j < WheelModel<S>::states; ++j) {
       const double h = 1e-5;
       auto up = x, down = x;
       up(j) += h;
       down(j) -= h;
-      const auto above = instant.at(up), below = instant.at(down);
+      const auto above = epoch.at(up), below = epoch.at(down);
       for (std::size_t i = 0; i < static_cast<std::size_t>(readings); ++i) {
         const double slope = (above.rows[i].predicted - below.rows[i].predicted) / (2.0 * h);
         EXPECT_NEAR(here.rows[i].h(j), slope, 1e-5 * (1.0 + std::abs(slope)))
@@ -93,31 +93,31 @@ void expect_jacobian_of_differences(const OneInstant<S>& instant, int readings) 
 }
 
 TEST(WheelModel, JacobianOfOneSensorEqualsDifferences) {
-  expect_jacobian_of_differences(OneInstant<1>(0.0, 0.7), 2);
+  expect_jacobian_of_differences(OneEpoch<1>(0.0, 0.7), 2);
 }
 TEST(WheelModel, JacobianOfTwoSensorsEqualsDifferences) {
-  expect_jacobian_of_differences(OneInstant<2>(0.0, 0.7), 4);
+  expect_jacobian_of_differences(OneEpoch<2>(0.0, 0.7), 4);
 }
 TEST(WheelModel, JacobianOnARollingWheelEqualsDifferences) {
-  expect_jacobian_of_differences(OneInstant<2>(0.3, 0.7), 4);
+  expect_jacobian_of_differences(OneEpoch<2>(0.3, 0.7), 4);
 }
 TEST(WheelModel, JacobianWithRippleDelayAndGyroscopesEqualsDifferences) {
-  OneInstant<2> instant(0.3, 0.7);
-  instant.model.with_ripple = instant.model.with_gyro = true;
-  instant.model.orders = {1, 2, 5, 7};
-  instant.model.delay_s = 0.01;
-  for (PlanarReadings& sensor : instant.readings) sensor.speed_radps = {1.0};
-  expect_jacobian_of_differences(instant, 6);
+  OneEpoch<2> epoch(0.3, 0.7);
+  epoch.model.with_ripple = epoch.model.with_gyro = true;
+  epoch.model.orders = {1, 2, 5, 7};
+  epoch.model.delay_s = 0.01;
+  for (PlanarReadings& sensor : epoch.readings) sensor.speed_radps = {1.0};
+  expect_jacobian_of_differences(epoch, 6);
 }
 
 TEST(WheelModel, JacobianWithAnEncoderEqualsDifferences) {
   const EncoderReadings encoder{
       .angle_rad = {3.3}, .age_s = {0.004}, .variance_rad2 = {1e-6}, .direction = -1.0};
-  OneInstant<1> instant(0.3, 0.0);
-  instant.model.with_ripple = true;
-  instant.model.delay_s = 0.01;
-  instant.model.encoder = &encoder;
-  expect_jacobian_of_differences(instant, 3);
+  OneEpoch<1> epoch(0.3, 0.0);
+  epoch.model.with_ripple = true;
+  epoch.model.delay_s = 0.01;
+  epoch.model.encoder = &encoder;
+  expect_jacobian_of_differences(epoch, 3);
 }
 
 // The rippling speed integrated numerically from the initial angle.
@@ -144,14 +144,14 @@ TEST(WheelModel, SpeedAndAccelerationAreTheDerivativesOfTheRipplingAngle) {
 
 // Response of one pole to a rotating vector: delayed by atan(ω τ), attenuated by its cosine.
 TEST(WheelModel, AFilterReadsGravityLaterAndWeaker) {
-  OneInstant<1> instant(0.0, 0.0);
-  instant.model.delay_s = 0.02;
+  OneEpoch<1> epoch(0.0, 0.0);
+  epoch.model.delay_s = 0.02;
   State<1> x = State<1>::Zero();
   x(wheel::angle) = 1.1;
   x(wheel::speed) = 30.0;
   const std::complex<double> pole(1.0, 30.0 * 0.02);
   const std::complex<double> read = std::polar(9.8, 1.1) / pole;
-  const auto& rows = instant.at(x).rows;
+  const auto& rows = epoch.at(x).rows;
   EXPECT_NEAR(rows[0].predicted, read.imag(), 1e-12);
   EXPECT_NEAR(rows[1].predicted, read.real(), 1e-12);
 }
@@ -161,10 +161,10 @@ TEST(WheelModel, AFilterReadsGravityLaterAndWeaker) {
 TEST(WheelModel, PredictsExactlyWhatTheKinematicsOfAPointSay) {
   Normal normal(3);
   for (const double rolling_radius_m : {0.0, 0.31}) {
-    const OneInstant<2> instant(rolling_radius_m, 0.4);
+    const OneEpoch<2> epoch(rolling_radius_m, 0.4);
     for (int trial = 0; trial < 50; ++trial) {
       const auto x = any_state<2>(normal);
-      const auto out = instant.at(x);
+      const auto out = epoch.at(x);
       const Turning now{x(wheel::angle), x(wheel::speed), x(wheel::accel)};
       const test::Site site{9.8, 0.0, rolling_radius_m};
       for (int s = 0; s < 2; ++s) {
@@ -190,7 +190,7 @@ TEST(WheelModel, PredictsExactlyWhatTheKinematicsOfAPointSay) {
 // difference −R ω² and R α.
 TEST(WheelModel, OfAnOppositePairSumIsGravityAndDifferenceIsTheMotion) {
   constexpr double R = 0.1;
-  const OneInstant<2> instant(0.0, 0.0);
+  const OneEpoch<2> epoch(0.0, 0.0);
   State<2> x;
   x.setZero();
   x(wheel::angle) = 0.6;
@@ -198,18 +198,18 @@ TEST(WheelModel, OfAnOppositePairSumIsGravityAndDifferenceIsTheMotion) {
   x(wheel::accel) = -5.0;
   x(place_of(2, 0)) = R;
   x(place_of(2, 1)) = -R;
-  const auto& rows = instant.at(x).rows;
+  const auto& rows = epoch.at(x).rows;
   EXPECT_NEAR(0.5 * (rows[0].predicted + rows[2].predicted), 9.8 * std::sin(0.6), 1e-14);
   EXPECT_NEAR(0.5 * (rows[1].predicted + rows[3].predicted), 9.8 * std::cos(0.6), 1e-14);
   EXPECT_NEAR(0.5 * (rows[0].predicted - rows[2].predicted), -R * 9.0, 1e-14);
   EXPECT_NEAR(0.5 * (rows[1].predicted - rows[3].predicted), R * -5.0, 1e-14);
 }
 
-TEST(WheelModel, TakesValuesAndVariancesFromTheRowsOfTheInstant) {
-  OneInstant<2> instant(0.0, 0.0);
-  instant.readings[1] = {{0.0, 5.0}, {0.0, 6.0}, {9.0, 0.5}};
-  instant.instants[0].row = {0, 1};
-  const auto out = instant.at(State<2>::Zero());
+TEST(WheelModel, TakesValuesAndVariancesFromTheRowsOfTheEpoch) {
+  OneEpoch<2> epoch(0.0, 0.0);
+  epoch.readings[1] = {{0.0, 5.0}, {0.0, 6.0}, {9.0, 0.5}};
+  epoch.epochs[0].row = {0, 1};
+  const auto out = epoch.at(State<2>::Zero());
   const std::array values{1.0, 2.0, 5.0, 6.0}, variances{0.25, 0.25, 0.5, 0.5};
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(out.rows[i].value, values[i]);
@@ -218,19 +218,19 @@ TEST(WheelModel, TakesValuesAndVariancesFromTheRowsOfTheInstant) {
 }
 
 TEST(WheelModel, ASensorThatWasNotReadGivesNoReadings) {
-  OneInstant<2> instant(0.0, 0.0);
-  instant.instants[0].row[0] = WheelInstant::no_row;
-  const auto second_only = instant.at(State<2>::Zero());
+  OneEpoch<2> epoch(0.0, 0.0);
+  epoch.epochs[0].row[0] = WheelEpoch::no_row;
+  const auto second_only = epoch.at(State<2>::Zero());
   EXPECT_EQ(second_only.count, 2);
   EXPECT_EQ(second_only.rows[0].h(wheel::first_of(1) + wheel::bias), 1.0);
-  instant.readings[1].v_mps2[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(instant.at(State<2>::Zero()).count, 0);
+  epoch.readings[1].v_mps2[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(epoch.at(State<2>::Zero()).count, 0);
 }
 
 TEST(WheelModel, TwoStepsEqualOneOfTwiceTheLength) {
-  std::vector<WheelInstant> instants{{0.0, {}}, {0.013, {}}, {0.026, {}}};
+  std::vector<WheelEpoch> epochs{{0.0, {}}, {0.013, {}}, {0.026, {}}};
   WheelModel<2> model;
-  model.instants = &instants;
+  model.epochs = &epochs;
   model.noise = {.jerk_psd = 3.0, .snap_psd = 7.0, .bias_walk_psd = 1e-5};
   State<2> x = State<2>::Zero();
   x.head<wheel::moving>() << 0.5, -1.2, 3.0, 0.7;
@@ -242,9 +242,9 @@ TEST(WheelModel, TwoStepsEqualOneOfTwiceTheLength) {
 }
 
 TEST(WheelModel, EachOfTheTwoDrivesIsThatOfItsOwnModel) {
-  std::vector<WheelInstant> instants{{0.0, {}}, {0.1, {}}};
+  std::vector<WheelEpoch> epochs{{0.0, {}}, {0.1, {}}};
   WheelModel<1> model;
-  model.instants = &instants;
+  model.epochs = &epochs;
   model.noise = {.jerk_psd = 3.0, .snap_psd = 0.0};
   const auto rough = model.transition(State<1>::Zero(), 1);
   EXPECT_DOUBLE_EQ(rough.Q(wheel::accel, wheel::accel), 3.0 * 0.1);
@@ -256,9 +256,9 @@ TEST(WheelModel, EachOfTheTwoDrivesIsThatOfItsOwnModel) {
 }
 
 TEST(WheelModel, OnlyTheBiasesWalk) {
-  std::vector<WheelInstant> instants{{0.0, {}}, {0.01, {}}};
+  std::vector<WheelEpoch> epochs{{0.0, {}}, {0.01, {}}};
   WheelModel<2> model;
-  model.instants = &instants;
+  model.epochs = &epochs;
   model.noise = {.jerk_psd = 1.0, .snap_psd = 2.0, .bias_walk_psd = 0.5};
   const auto step = model.transition(State<2>::Zero(), 1);
   for (int i = wheel::moving; i < wheel::states(2); ++i) {
@@ -272,19 +272,19 @@ TEST(WheelModel, OnlyTheBiasesWalk) {
 // independent of the filter's state.
 TEST(WheelModel, AboutAPathTheConstantsEnterLinearly) {
   Normal normal(5);
-  OneInstant<1> instant(0.0, 0.0);
+  OneEpoch<1> epoch(0.0, 0.0);
   const State<1> x = any_state<1>(normal);
   WheelPath path;
   path.moving.push_back(x.head<wheel::moving>());
   path.standing = x.tail<wheel::standing(1)>();
-  const auto exact = instant.at(x);
-  instant.model.about = &path;
-  const auto at_path = instant.at(x);
+  const auto exact = epoch.at(x);
+  epoch.model.about = &path;
+  const auto at_path = epoch.at(x);
   EXPECT_NEAR(at_path.rows[0].predicted, exact.rows[0].predicted, 1e-12);
   State<1> moved = x;
   moved(wheel::first_of(0) + wheel::scale) += 0.1;
   moved(wheel::first_of(0) + wheel::skew) += 0.1;
-  const auto beside = instant.at(moved);
+  const auto beside = epoch.at(moved);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(beside.rows[i].h, at_path.rows[i].h);
     EXPECT_NEAR(beside.rows[i].predicted,
@@ -296,8 +296,8 @@ TEST(WheelModel, AboutAPathTheConstantsEnterLinearly) {
 // attenuation of rotating components.
 TEST(WheelModel, ADelayShowsTheMotionOfEarlier) {
   Normal normal(6);
-  OneInstant<1> instant(0.0, 0.0);
-  instant.model.with_ripple = true;
+  OneEpoch<1> epoch(0.0, 0.0);
+  epoch.model.with_ripple = true;
   State<1> x = any_state<1>(normal);
   x(wheel::speed) = 4.0;
   x(wheel::accel) = x(wheel::jerk) = 0.0;
@@ -305,9 +305,9 @@ TEST(WheelModel, ADelayShowsTheMotionOfEarlier) {
   constexpr double late_s = 1e-3;
   State<1> earlier = x;
   earlier(wheel::angle) -= late_s * x(wheel::speed);
-  const auto undelayed = instant.at(earlier);
-  instant.model.delay_s = late_s;
-  const auto delayed = instant.at(x);
+  const auto undelayed = epoch.at(earlier);
+  epoch.model.delay_s = late_s;
+  const auto delayed = epoch.at(x);
   for (std::size_t i = 0; i < 2; ++i)
     // attenuation g (ω τ)² / 2, without a term proportional to τ
     EXPECT_NEAR(delayed.rows[i].predicted, undelayed.rows[i].predicted, 1.5e-4);
@@ -315,12 +315,12 @@ TEST(WheelModel, ADelayShowsTheMotionOfEarlier) {
 
 // A static wheel constrains the speed, not the angle.
 TEST(WheelModel, StandingIsAConstraintOfTheSpeed) {
-  OneInstant<1> instant(0.0, 0.0);
+  OneEpoch<1> epoch(0.0, 0.0);
   State<1> x = State<1>::Zero();
   x(wheel::speed) = 0.2;
-  EXPECT_EQ(instant.at(x).constraints, 0);
-  instant.instants[0].stands = true;
-  const auto out = instant.at(x);
+  EXPECT_EQ(epoch.at(x).constraints, 0);
+  epoch.epochs[0].stands = true;
+  const auto out = epoch.at(x);
   ASSERT_EQ(out.count, 3);
   EXPECT_EQ(out.constraints, 1);
   EXPECT_EQ(out.rows[2].value, 0.0);

@@ -76,8 +76,8 @@ void gather(const WheelReadings& readings,
             NoiseStretch& encoder) {
   int channel = 0;
   for (std::size_t s = 0; s < readings.sensors.size() && channel < step.count; ++s) {
-    const std::int64_t row = readings.instants[k].row[s];
-    if (row == WheelInstant::no_row) continue;
+    const std::int64_t row = readings.epochs[k].row[s];
+    if (row == WheelEpoch::no_row) continue;
     const auto at = static_cast<std::size_t>(row);
     if (!readings.sensors[s].has(at)) continue;
     for (int axis = 0; axis < 2; ++axis, ++channel) {
@@ -235,9 +235,9 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
     const double least = model.about == nullptr ? 0.0
                                                 : least_variance(readings.sensors[s],
                                                                  readings.rate_hz(), *model.about);
-    for (std::size_t k = 0; k < readings.instants.size(); ++k) {
-      const std::int64_t row = readings.instants[k].row[s];
-      if (row != WheelInstant::no_row)
+    for (std::size_t k = 0; k < readings.epochs.size(); ++k) {
+      const std::int64_t row = readings.epochs[k].row[s];
+      if (row != WheelEpoch::no_row)
         readings.sensors[s].variance_m2ps4[static_cast<std::size_t>(row)] =
             std::max(profile.at(readings.time_s[k] - start_s), least);
     }
@@ -246,12 +246,12 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
 
 template <int S>
 Excerpt<S> excerpt_to_tune(const WheelModel<S>& model, const WheelPrior& prior) {
-  constexpr std::size_t most_instants = 20'000, parts = 4;
+  constexpr std::size_t most_epochs = 20'000, parts = 4;
   const std::size_t size = model.size();
   auto state = prior_state<S>(prior);
-  Excerpt<S> best{0, std::min(size, most_instants), state};
+  Excerpt<S> best{0, std::min(size, most_epochs), state};
   if (best.last == size) return best;
-  const std::size_t stride = most_instants / parts;
+  const std::size_t stride = most_epochs / parts;
   std::vector<FilterState<wheel::states(S)>> states;
   std::vector<double> change;
   for (std::size_t first = 0; first < size; first += stride) {
@@ -267,7 +267,7 @@ Excerpt<S> excerpt_to_tune(const WheelModel<S>& model, const WheelPrior& prior) 
     for (std::size_t part = 0; part < parts; ++part) sum += change[i + part];
     if (sum <= most) continue;
     most = sum;
-    best = {i * stride, std::min(i * stride + most_instants, size), states[i]};
+    best = {i * stride, std::min(i * stride + most_epochs, size), states[i]};
   }
   return best;
 }

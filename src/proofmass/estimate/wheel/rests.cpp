@@ -67,8 +67,8 @@ class Span {
                                            const std::vector<double>& axis) const {
     std::vector<double> out;
     for (std::size_t k = first_; k < last_; ++k) {
-      const std::int64_t row = readings_.instants[k].row[sensor];
-      if (row == WheelInstant::no_row) continue;
+      const std::int64_t row = readings_.epochs[k].row[sensor];
+      if (row == WheelEpoch::no_row) continue;
       const double value = axis[static_cast<std::size_t>(row)];
       if (!std::isnan(value)) out.push_back(value);
     }
@@ -91,7 +91,7 @@ void mark_standing(WheelReadings& readings) {
   const std::vector<double>& time_s = readings.time_s;
   const auto mark = [&](std::size_t first, std::size_t last) {
     if (!Span(readings, first, last).stands()) return;
-    for (std::size_t k = first; k < last; ++k) readings.instants[k].stands = true;
+    for (std::size_t k = first; k < last; ++k) readings.epochs[k].stands = true;
   };
   std::size_t first = 0;
   for (std::size_t k = 0; k < time_s.size(); ++k) {

@@ -111,7 +111,7 @@ std::array<RippleFit, wheel::ripple_orders> fit_orders(const WheelModel<S>& mode
   for (std::size_t k = 0; k < model.size(); ++k) {
     x.template head<wheel::moving>() = path.moving[k];
     model.measure(x, k, out);
-    const double turned = std::abs(path.moving[k](wheel::speed)) * (*model.instants)[k].dt_s;
+    const double turned = std::abs(path.moving[k](wheel::speed)) * (*model.epochs)[k].dt_s;
     for (std::size_t o = 0; o < fits.size(); ++o) {
       // Beyond half a cycle between measurements an order is aliased.
       if (!(model.orders[o] * turned < std::numbers::pi)) continue;
@@ -127,7 +127,7 @@ std::array<RippleFit, wheel::ripple_orders> fit_orders(const WheelModel<S>& mode
 
 }  // namespace
 
-std::size_t instants_of_first_turn(const WheelPath& path) {
+std::size_t epochs_of_first_turn(const WheelPath& path) {
   const double start_rad = path.moving.front()(wheel::angle);
   const auto away = std::ranges::find_if(path.moving, [&](const Mat<wheel::moving>& at) {
     return std::abs(at(wheel::angle) - start_rad) > rad_per_turn;

@@ -17,7 +17,7 @@ struct Settled {
 };
 
 /// Number of epochs of a path before it is a turn away from its start.
-[[nodiscard]] std::size_t instants_of_first_turn(const WheelPath& path);
+[[nodiscard]] std::size_t epochs_of_first_turn(const WheelPath& path);
 
 /// The model of the final passes: linearised about a path, with the lever arms held.
 template <int S>
@@ -26,7 +26,7 @@ template <int S>
                                        const WheelPath& about) {
   auto model = wheel_model<S>(readings, noise);
   model.about = &about;
-  model.first_turn = instants_of_first_turn(about);
+  model.first_turn = epochs_of_first_turn(about);
   model.places_held = true;
   model.with_ripple = true;
   return model;

@@ -83,13 +83,13 @@ Beginning seek_beginning(const WheelReadings& readings, const WheelNoise& noise)
 /// has none.
 std::int64_t append_average(const PlanarReadings& sensor,
                             std::size_t index,
-                            std::span<const WheelInstant> epochs,
+                            std::span<const WheelEpoch> epochs,
                             PlanarReadings& out) {
   double u = 0.0, v = 0.0, variance = 0.0, count = 0.0, speed = 0.0, speeds = 0.0;
-  for (const WheelInstant& epoch : epochs) {
+  for (const WheelEpoch& epoch : epochs) {
     const std::int64_t row = epoch.row[index];
     const auto at = static_cast<std::size_t>(row);
-    if (row == WheelInstant::no_row || !sensor.has(at)) continue;
+    if (row == WheelEpoch::no_row || !sensor.has(at)) continue;
     u += sensor.u_mps2[at];
     v += sensor.v_mps2[at];
     variance += sensor.variance_m2ps4[at];
@@ -98,7 +98,7 @@ std::int64_t append_average(const PlanarReadings& sensor,
     speed += sensor.speed_radps[at];
     speeds += 1.0;
   }
-  if (count == 0.0) return WheelInstant::no_row;
+  if (count == 0.0) return WheelEpoch::no_row;
   out.u_mps2.push_back(u / count);
   out.v_mps2.push_back(v / count);
   out.variance_m2ps4.push_back(variance / (count * count));
@@ -115,9 +115,9 @@ double WheelReadings::rate_hz() const {
   // excluded.
   constexpr double gap_share = 0.01, gap_factor = 5.0;
   std::vector<double> steps;
-  steps.reserve(instants.size());
-  for (const WheelInstant& instant : instants)
-    if (instant.dt_s > 0.0) steps.push_back(instant.dt_s);
+  steps.reserve(epochs.size());
+  for (const WheelEpoch& epoch : epochs)
+    if (epoch.dt_s > 0.0) steps.push_back(epoch.dt_s);
   if (steps.empty()) return 0.0;
   const double gap_s = gap_factor * *quantile(steps, 1.0 - gap_share);
   double sum_s = 0.0, count = 0.0;
@@ -142,30 +142,30 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
                     .one_speed = readings.one_speed,
                     .shakes = readings.shakes,
                     .time_s = {},
-                    .instants = {},
+                    .epochs = {},
                     .sensors = std::vector<PlanarReadings>(readings.sensors.size())};
   if (readings.encoder) out.encoder = averaged(*readings.encoder, readings.time_s, each);
   for (std::size_t s = 0; s < readings.sensors.size(); ++s)
     out.sensors[s].speed_variance = readings.sensors[s].speed_variance / static_cast<double>(each);
-  const std::span all(readings.instants);
+  const std::span all(readings.epochs);
   for (std::size_t first = 0; first < all.size(); first += each) {
     const auto epochs = all.subspan(first, std::min(each, all.size() - first));
     double time_s = 0.0;
     for (std::size_t k = first; k < first + epochs.size(); ++k)
       time_s += readings.time_s[k] / static_cast<double>(epochs.size());
-    WheelInstant instant;
-    instant.stands = std::ranges::all_of(epochs, &WheelInstant::stands);
+    WheelEpoch averaged;
+    averaged.stands = std::ranges::all_of(epochs, &WheelEpoch::stands);
     for (std::size_t s = 0; s < readings.sensors.size(); ++s)
-      instant.row[s] = append_average(readings.sensors[s], s, epochs, out.sensors[s]);
-    instant.dt_s = out.time_s.empty() ? 0.0 : time_s - out.time_s.back();
+      averaged.row[s] = append_average(readings.sensors[s], s, epochs, out.sensors[s]);
+    averaged.dt_s = out.time_s.empty() ? 0.0 : time_s - out.time_s.back();
     out.time_s.push_back(time_s);
-    out.instants.push_back(instant);
+    out.epochs.push_back(averaged);
   }
   return out;
 }
 
 WheelTrack find_track(WheelReadings& readings, std::size_t first) {
-  PM_EXPECTS(readings.sensors.size() == 1 && readings.instants.size() >= 2);
+  PM_EXPECTS(readings.sensors.size() == 1 && readings.epochs.size() >= 2);
   WheelTrack best;
   double best_lost = std::numeric_limits<double>::infinity();
   for (std::size_t i = first; i < seeks.size(); ++i) {

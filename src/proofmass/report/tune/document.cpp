@@ -118,14 +118,14 @@ Fields case_fields(const estimate::GainCase& one) {
   for (const auto& time_s : study.settling_s)
     settling.push_back(field::number({}, time_s, {.why_null = unsettled}));
   constexpr std::size_t most = 200;
-  const std::size_t every = study.instants.size() / most + 1;
+  const std::size_t every = study.epochs.size() / most + 1;
   std::vector<double> t_s;
   Fields gains, variances;
-  for (std::size_t k = 0; k < study.instants.size(); k += every) {
-    const estimate::GainInstant& instant = study.instants[k];
-    t_s.push_back(instant.t_s);
-    gains.push_back(field::numbers("", instant.gain));
-    variances.push_back(field::numbers("", instant.variance));
+  for (std::size_t k = 0; k < study.epochs.size(); k += every) {
+    const estimate::GainEpoch& epoch = study.epochs[k];
+    t_s.push_back(epoch.t_s);
+    gains.push_back(field::numbers("", epoch.gain));
+    variances.push_back(field::numbers("", epoch.variance));
   }
   return {field::text("label", case_words(one)),
           field::number("process_psd", study.options.jerk_psd_m2ps5),

@@ -66,10 +66,10 @@ Figure gain_figure(const estimate::TuneStudy& study) {
   for (std::size_t k = 0; k < study.cases.size(); ++k) {
     const estimate::GainCase& one = study.cases[k];
     Curve curve{case_words(one), {}, {}, inks[k % inks.size()]};
-    for (const estimate::GainInstant& instant : one.study.instants) {
-      if (instant.t_s <= 0.0) continue;
-      curve.x.push_back(instant.t_s);
-      curve.y.push_back(instant.gain[2]);
+    for (const estimate::GainEpoch& epoch : one.study.epochs) {
+      if (epoch.t_s <= 0.0) continue;
+      curve.x.push_back(epoch.t_s);
+      curve.y.push_back(epoch.gain[2]);
     }
     figure.curves.push_back(std::move(curve));
     if (const auto settled = one.study.settling_s[2]; settled && *settled > 0.0) {
@@ -91,10 +91,10 @@ Figure covariance_figure(const estimate::TuneStudy& study) {
   if (study.cases.empty()) return figure;
   for (std::size_t i = 0; i < names.size(); ++i) {
     Curve curve{names[i], {}, {}, inks[i]};
-    for (const estimate::GainInstant& instant : study.cases.front().study.instants) {
-      if (instant.t_s <= 0.0) continue;
-      curve.x.push_back(instant.t_s);
-      curve.y.push_back(std::sqrt(instant.variance[i]));
+    for (const estimate::GainEpoch& epoch : study.cases.front().study.epochs) {
+      if (epoch.t_s <= 0.0) continue;
+      curve.x.push_back(epoch.t_s);
+      curve.y.push_back(std::sqrt(epoch.variance[i]));
     }
     figure.curves.push_back(std::move(curve));
   }

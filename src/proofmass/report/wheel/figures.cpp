@@ -88,9 +88,9 @@ bool has(const WheelSeries& series, const std::vector<double>& values) {
 
 // Number of epochs by the number of channels used.
 std::array<std::size_t, 256> channels_histogram(const WheelSeries& series) {
-  std::array<std::size_t, 256> instants{};
-  for (const unsigned char channels : series.channels_used) ++instants[channels];
-  return instants;
+  std::array<std::size_t, 256> epochs{};
+  for (const unsigned char channels : series.channels_used) ++epochs[channels];
+  return epochs;
 }
 
 Band band_about_zero(const WheelSeries& series, const std::vector<double>& std_rad) {
@@ -222,9 +222,9 @@ Figure innovations_figure(const WheelSolution& solution) {
   Envelope largest = thinned_band(series.time_s, nis, nis);
   figure.curves.push_back({nis.size() > largest.x.size() ? "NIS, largest of each interval" : "NIS",
                            std::move(largest.x), std::move(largest.upper), Ink::blue});
-  const std::array<std::size_t, 256> instants = channels_histogram(series);
+  const std::array<std::size_t, 256> epochs = channels_histogram(series);
   for (int channels = 1; channels < 256; ++channels) {
-    if (instants[static_cast<std::size_t>(channels)] * 20 < nis.size() || nis.empty()) continue;
+    if (epochs[static_cast<std::size_t>(channels)] * 20 < nis.size() || nis.empty()) continue;
     const double level = chi_square_quantile(0.95, channels);
     figure.levels.push_back(
         {fmt::format("95 % level for {}: {}",

@@ -111,8 +111,8 @@ TEST(ErrataChapter4, TheGainIsInProportionNeitherToQNorToOneOverR) {
 
 // 4.1.4: "The initial guess of P is large which reflect less confidence on the measurement".
 TEST(ErrataChapter4, AWidePriorGivesTheFirstMeasurementFullWeight) {
-  EXPECT_GT(study(1.0, 1.0, 100.0).instants.front().gain[2], 0.98);
-  EXPECT_LT(study(1.0, 1.0, 0.01).instants.front().gain[2], 0.25);
+  EXPECT_GT(study(1.0, 1.0, 100.0).epochs.front().gain[2], 0.98);
+  EXPECT_LT(study(1.0, 1.0, 0.01).epochs.front().gain[2], 0.25);
 }
 
 // (4.26): off the diagonal σ_p σ_v, which is a correlation of one; then "taken as zero".
@@ -153,7 +153,7 @@ TEST(ErrataChapter4, TheGainThatSettlesSoonestIsNotTheBest) {
 TEST(ErrataChapter4, FromAccelerationsThePositionsVarianceGrowsWithTheCubeOfTime) {
   const auto run = study(1.0, 1.0, 1e-9);
   const auto at = [&](double t_s) {
-    return run.instants[static_cast<std::size_t>(std::lround(t_s / 0.2))].variance;
+    return run.epochs[static_cast<std::size_t>(std::lround(t_s / 0.2))].variance;
   };
   EXPECT_NEAR(at(80.0)[0] / at(40.0)[0], 8.0, 0.4);
   EXPECT_NEAR(at(80.0)[1] / at(40.0)[1], 2.0, 0.1);

@@ -114,7 +114,7 @@ TEST(ErrataChapter5, AGainThatEndsAtATenthIsThereInATenthOfASecond) {
                                            .duration_s = 5.0,
                                            .prior_variance = 1e6 * R});
   EXPECT_NEAR(study.limit[2], k, 1e-12);
-  EXPECT_GT(study.instants.front().gain[2], 0.99);
+  EXPECT_GT(study.epochs.front().gain[2], 0.99);
   EXPECT_LT(*study.settling_s[2], 0.2);
   // Such an R corresponds to a noise of 0.67 m/s², fifty times the sensor's.
   const double rms = sensor::filtered_noise_rms(sensor::adxl335.noise_density_mps2_rthz[0], 50.0);

@@ -164,7 +164,7 @@ TEST(ErrataChapter4, AFilterRunBackwardIsHalfOfTheSmoother) {
 }
 
 // 6.1, 6.2: improvement by smoothing, and use of the smoothed output as feedback to the motor.
-TEST(ErrataChapter6, AtTheLastInstantTheSmootherIsTheFilter) {
+TEST(ErrataChapter6, AtTheLastEpochTheSmootherIsTheFilter) {
   const auto run = smoothed_by_the_library(0.9, readings);
   EXPECT_EQ(run.steps.back().smoothed.mean, run.steps.back().filtered.mean);
   EXPECT_EQ(run.steps.back().smoothed.cov, run.steps.back().filtered.cov);

@@ -18,8 +18,7 @@ using report::fixed;
 std::size_t readings_to(const GainStudyOptions& options, double variance_m2ps4) {
   const GainStudy study = gain_study(options);
   std::size_t count = 0;
-  while (count < study.instants.size() && study.instants[count].variance[2] > variance_m2ps4)
-    ++count;
+  while (count < study.epochs.size() && study.epochs[count].variance[2] > variance_m2ps4) ++count;
   return count + 1;
 }
 
@@ -76,7 +75,7 @@ std::vector<Finding> covariance_findings(double slowest_r) {
 Item covariance_item() {
   const double slowest_r = slowest_r_m2ps4();
   const GainStudy study = gain_study(quick_filter);
-  const auto& last = study.instants.back().variance;
+  const auto& last = study.epochs.back().variance;
   return {
       .id = "figure 4.3",
       .title = "Covariance against time and step",

@@ -34,7 +34,7 @@ Curve variance_curve(const GainStudyOptions& options, Ink ink) {
   Curve curve{.label = setting_words(options), .x = {}, .y = {}, .ink = ink};
   for (std::size_t k = 0; k < shown; ++k) {
     curve.x.push_back(static_cast<double>(k + 1));
-    curve.y.push_back(study.instants[k].variance[2]);
+    curve.y.push_back(study.epochs[k].variance[2]);
   }
   return curve;
 }
@@ -106,10 +106,10 @@ Figure growth_figure(const GainStudy& study) {
       .y = {.label = "Variance (SI units)", .scale = AxisScale::log}};
   for (std::size_t i = 3; i-- > 0;) {
     Curve curve{.label = states[i], .x = {}, .y = {}, .ink = state_inks[i]};
-    for (const auto& instant : study.instants) {
-      if (!(instant.t_s > 0.0)) continue;
-      curve.x.push_back(instant.t_s);
-      curve.y.push_back(instant.variance[i]);
+    for (const auto& epoch : study.epochs) {
+      if (!(epoch.t_s > 0.0)) continue;
+      curve.x.push_back(epoch.t_s);
+      curve.y.push_back(epoch.variance[i]);
     }
     figure.curves.push_back(std::move(curve));
   }
@@ -160,14 +160,14 @@ Figure gain_figure(const GainStudy& study) {
   for (std::size_t i = 3; i-- > 0;) {
     Curve curve{
         .label = fmt::format("of the {}", states[i]), .x = {}, .y = {}, .ink = state_inks[i]};
-    for (const auto& instant : study.instants) {
-      if (instant.t_s > shown_s + 1e-9) break;
-      curve.x.push_back(instant.t_s);
-      curve.y.push_back(instant.gain[i]);
-      if (study.settling_s[i] && instant.t_s == *study.settling_s[i])
-        figure.callouts.push_back({.text = report::fixed(instant.t_s, 1) + " s",
-                                   .x = instant.t_s,
-                                   .y = instant.gain[i],
+    for (const auto& epoch : study.epochs) {
+      if (epoch.t_s > shown_s + 1e-9) break;
+      curve.x.push_back(epoch.t_s);
+      curve.y.push_back(epoch.gain[i]);
+      if (study.settling_s[i] && epoch.t_s == *study.settling_s[i])
+        figure.callouts.push_back({.text = report::fixed(epoch.t_s, 1) + " s",
+                                   .x = epoch.t_s,
+                                   .y = epoch.gain[i],
                                    .ink = state_inks[i],
                                    .below = i < 2});
     }

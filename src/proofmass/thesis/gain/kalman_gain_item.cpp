@@ -26,9 +26,9 @@ report::Figure gain_figure(const FirstTurn& turn,
   const double noise_mps2 = std::sqrt(as_printed.options.accel_variance_m2ps4);
   const double step_s = as_printed.options.step_s;
   std::vector<double> t_s, k;
-  for (const estimate::GainInstant& instant : as_printed.instants) {
-    t_s.push_back(instant.t_s);
-    k.push_back(instant.gain[2]);
+  for (const estimate::GainEpoch& epoch : as_printed.epochs) {
+    t_s.push_back(epoch.t_s);
+    k.push_back(epoch.gain[2]);
   }
   report::Figure figure{
       .title = "Gain of the acceleration",

@@ -76,7 +76,7 @@ std::vector<Finding> settling_findings(const Half& half, const GainStudy& study)
                                  .si_unit = "m^2/s^4",
                                  .shown = variance,
                                  .ours = exact(study.limit_variance_m2ps4)}};
-  const auto& last = study.instants.back().variance;
+  const auto& last = study.epochs.back().variance;
   findings.push_back({.key = "velocity_std",
                       .label = "Standard deviation of the velocity after 100 s",
                       .si_unit = "m/s",
@@ -130,8 +130,7 @@ Item settling_item(const Half& half) {
           "1/e in {} s. The standard deviation of the position is {} m after 100 s and grows.",
           settled_words(study.settling_s[2]), settled_words(study.settling_s[1]),
           settled_words(study.settling_s[0]), settled_words(all_settled_s(study, 1e-3)),
-          fixed(response.time_constant_s, 2),
-          fixed(std::sqrt(study.instants.back().variance[0]), 0)),
+          fixed(response.time_constant_s, 2), fixed(std::sqrt(study.epochs.back().variance[0]), 0)),
       .note = fmt::format(
           "Gain and covariance depend on Q, R and the step and on no measurement, so there is "
           "nothing "

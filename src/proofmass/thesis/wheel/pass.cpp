@@ -28,7 +28,7 @@ constexpr double doubt = 100.0;
 /// What a model needs to point at.
 struct Readings {
   std::vector<double> time_s;
-  std::vector<estimate::WheelInstant> instants;
+  std::vector<estimate::WheelEpoch> epochs;
   std::array<estimate::PlanarReadings, 2> sensors;
 };
 
@@ -43,7 +43,7 @@ Readings readings_of(const WheelRecord& record, double variance_m2ps4) {
   for (std::size_t k = 0; k + averaged <= time_s.size(); k += averaged) {
     const auto row = static_cast<std::int64_t>(out.time_s.size());
     const double t_s = mean(time_s, k);
-    out.instants.push_back({.dt_s = row == 0 ? 0.0 : t_s - out.time_s.back(), .row = {row, row}});
+    out.epochs.push_back({.dt_s = row == 0 ? 0.0 : t_s - out.time_s.back(), .row = {row, row}});
     out.time_s.push_back(t_s);
     for (std::size_t s = 0; s < 2; ++s) {
       out.sensors[s].u_mps2.push_back(mean(record.sensors[s].accel_mps2[0], k));
@@ -110,7 +110,7 @@ void run_over(const Model& model, const Prior& prior, WheelPass& pass, estimate:
         pass.smoothed.angle_rad[k] = path.moving[k](wheel::angle);
         const auto cov = later.cov<wheel::start + 1>(step.filtered);
         pass.smoothed.std_rad[k] = std::sqrt(cov(wheel::angle, wheel::angle));
-        // Rounding may leave a hair below 0 at the first instant.
+        // Rounding may leave a hair below 0 at the first epoch.
         pass.moved_std_rad[k] = std::sqrt(std::max(0.0, cov(wheel::angle, wheel::angle) +
                                                             cov(wheel::start, wheel::start) -
                                                             2.0 * cov(wheel::angle, wheel::start)));
@@ -131,7 +131,7 @@ WheelPass wheel_pass(const RigRun& run, const WheelRecord& record) {
   model.phase_rad = std::numbers::pi;
   model.delay_s = 1.0 / (rad_per_turn * rig_bandwidth_hz);
   model.noise = noise_of(run, record);
-  model.instants = &readings.instants;
+  model.epochs = &readings.epochs;
   model.readings = {&readings.sensors[0], &readings.sensors[1]};
   model.places_held = true;
   const Prior prior = prior_of(model, rig_radius_m);
