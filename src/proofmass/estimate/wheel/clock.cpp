@@ -89,7 +89,35 @@ Slope slope_of(const std::vector<double>& speed, const std::vector<double>& diff
   return all;
 }
 
+/// second(t + offset) − first(t), unwrapped.
+std::vector<double> angle_difference(const WheelMotion& first,
+                                     const WheelMotion& second,
+                                     const std::vector<double>& times,
+                                     double offset_s) {
+  std::vector<double> difference;
+  for (const double t : times) {
+    const double turned = interpolated(*second.time_s, *second.angle_rad, t + offset_s) -
+                          interpolated(*first.time_s, *first.angle_rad, t);
+    const double before = difference.empty() ? turned : difference.back();
+    difference.push_back(before + std::remainder(turned - before, 2.0 * std::numbers::pi));
+  }
+  return difference;
+}
+
+constexpr std::size_t fewest_times = 20;
+
+Error nothing_shared() {
+  return {Errc::not_observable, "the two recordings share less than a second"};
+}
+
 }  // namespace
+
+Result<ClockFit> fit_phase(const WheelMotion& first, const WheelMotion& second) {
+  const auto times = common_times(first, second, 0.0);
+  if (times.size() < fewest_times) return nothing_shared();
+  const double phase = *median(angle_difference(first, second, times, 0.0));
+  return ClockFit{{0.0, 0.0}, std::remainder(phase, 2.0 * std::numbers::pi)};
+}
 
 Result<ClockFit> fit_clocks(const WheelMotion& first,
                             const WheelMotion& second,
@@ -105,18 +133,11 @@ Result<ClockFit> fit_clocks(const WheelMotion& first,
   Slope slope;
   for (int round = 0; round < 4; ++round) {
     const auto times = common_times(first, second, offset_s);
-    if (times.size() < 20)
-      return Error{Errc::not_observable, "the two recordings share less than a second"};
-    std::vector<double> speed, difference;
-    for (const double t : times) {
+    if (times.size() < fewest_times) return nothing_shared();
+    const std::vector<double> difference = angle_difference(first, second, times, offset_s);
+    std::vector<double> speed;
+    for (const double t : times)
       speed.push_back(interpolated(*first.time_s, *first.speed_radps, t));
-      const double turned = interpolated(*second.time_s, *second.angle_rad, t + offset_s) -
-                            interpolated(*first.time_s, *first.angle_rad, t);
-      difference.push_back(difference.empty()
-                               ? turned
-                               : difference.back() + std::remainder(turned - difference.back(),
-                                                                    2.0 * std::numbers::pi));
-    }
     slope = slope_of(speed, difference);
     if (slope.speed_spread < 0.05) {
       if (clocks_shared) return ClockFit{{0.0, 0.0}, *median(difference)};

@@ -30,4 +30,7 @@ struct ClockFit {
                                           const WheelMotion& second,
                                           bool clocks_shared);
 
+/// The phase alone, of sensors with one clock. Errors: not_observable (no common time).
+[[nodiscard]] Result<ClockFit> fit_phase(const WheelMotion& first, const WheelMotion& second);
+
 }  // namespace proofmass::estimate

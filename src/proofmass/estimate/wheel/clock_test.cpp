@@ -101,5 +101,13 @@ TEST(FitClocks, SaysThatTooLittleTimeIsShared) {
   EXPECT_EQ(fit.error().message, "the two recordings share less than a second");
 }
 
+TEST(FitPhase, IsThePhaseWithoutAnOffset) {
+  const Seen first(changing, 0.0, 0.0, 1e-4, 1), second(changing, 0.0, -2.9, 1e-4, 2);
+  const auto fit = fit_phase(first.motion(), second.motion());
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_EQ(fit->offset_s.value, 0.0);
+  EXPECT_NEAR(fit->phase_rad, -2.9, 1e-4);
+}
+
 }  // namespace
 }  // namespace proofmass::estimate::wheel_clock_test

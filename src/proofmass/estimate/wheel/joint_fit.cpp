@@ -269,8 +269,12 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
     if (!again) return again.error();
     pair.singles[1] = std::move(again).value();
   }
-  const auto clocks = fit_clocks(motion_of(pair.singles[0].fit), motion_of(pair.singles[1].fit),
-                                 options.clocks_shared);
+  const WheelMotion one = motion_of(pair.singles[0].fit), two = motion_of(pair.singles[1].fit);
+  // Two angles by one encoder agree whatever the stamps of the sensors: their small difference,
+  // against the speed, would be a significant and wrong offset.
+  const bool one_encoder = pair.singles[0].encoder && pair.singles[1].encoder;
+  const auto clocks =
+      one_encoder ? fit_phase(one, two) : fit_clocks(one, two, options.clocks_shared);
   if (!clocks) return clocks.error().at("two sensors");
   pair.clocks = *clocks;
   // With a shared clock an offset must be clearly significant before the stamps are declared wrong,
