@@ -124,9 +124,11 @@ MatrixXd GramOfColumns::of(const MatrixXd& X) const {
   PM_EXPECTS(own >= 0 && X.rows() == w_.size());
   const MatrixXd curves = X.leftCols(own);
   MatrixXd gram(X.cols(), X.cols());
-  gram.topLeftCorner(own, own) = weighted_gram(curves, w_);
-  gram.bottomLeftCorner(m, own) = X.rightCols(m).transpose() * (w_.asDiagonal() * curves);
-  gram.topRightCorner(own, m) = gram.bottomLeftCorner(m, own).transpose();
+  if (own > 0) {
+    gram.topLeftCorner(own, own) = weighted_gram(curves, w_);
+    gram.bottomLeftCorner(m, own) = X.rightCols(m).transpose() * (w_.asDiagonal() * curves);
+    gram.topRightCorner(own, m) = gram.bottomLeftCorner(m, own).transpose();
+  }
   gram.bottomRightCorner(m, m) = of_impulses(X.col(own));
   return gram;
 }
@@ -171,15 +173,22 @@ double promised_gain(const VectorXd& z,
   std::vector<Index> active;
   for (Index k = 0; k < P.cols(); ++k)
     if (fit.strength(k) > 0.0) active.push_back(k);
-  const MatrixXd X = P(Eigen::all, active);
-  const MatrixXd own = positive_inverse(X.transpose() * (weight.asDiagonal() * X));
+  MatrixXd X, own;
+  if (!active.empty()) {
+    X = P(Eigen::all, active);
+    own = positive_inverse(X.transpose() * (weight.asDiagonal() * X));
+  }
   double most = 0.0;
   for (const VectorXd& column : columns) {
     const VectorXd weighted = weight.cwiseProduct(column);
     const double score = weighted.dot(excess);
     if (score <= 0.0) continue;
-    const VectorXd shared = X.transpose() * weighted;
-    const double alone = weighted.dot(column), information = alone - shared.dot(own * shared);
+    const double alone = weighted.dot(column);
+    double information = alone;
+    if (!active.empty()) {
+      const VectorXd shared = X.transpose() * weighted;
+      information -= shared.dot(own * shared);
+    }
     // A column spanned by the others adds nothing.
     constexpr double least_share = 1e-9;
     if (information > least_share * alone) most = std::max(most, score * score / information);
