@@ -217,6 +217,18 @@ TEST(PromisedGain, IsZeroForANegativeScore) {
   EXPECT_EQ(promised_gain(both.z, white, both.means, fit, {&walk, 1}), 0.0);
 }
 
+// No strength shares the information: (½ Σ c (p − S)/S²)² / (½ Σ c²/S²).
+TEST(PromisedGain, BesideNoStrengthIsThatOfTheColumnAlone) {
+  const Both both(record(14));
+  const MatrixXd white = both.noise.P.col(0);
+  const OrdinateFit none = evaluate_ordinates(both.z, white, {}, VectorXd::Zero(1));
+  const VectorXd c = both.noise.P.col(1);
+  const Eigen::ArrayXd S = none.density.array(), p = both.z.array().square();
+  const double score = 0.5 * (c.array() * (p - S) / S.square()).sum();
+  const double wanted = score * score / (0.5 * (c.array() / S).square().sum());
+  EXPECT_NEAR(promised_gain(both.z, white, {}, none, {&c, 1}), wanted, 1e-9 * wanted);
+}
+
 TEST(OrdinateLikelihood, ScalesWithTheData) {
   const Both both(record(15));
   const OrdinateFit fit = fit_ordinates(both.z, both.noise.P, both.means);

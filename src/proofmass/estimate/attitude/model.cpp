@@ -8,7 +8,7 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Of a level over half a second, in which the body may already move.
+/// Standard deviation of a level over half a second, in which the body may already move.
 constexpr double level_std_rad = 0.3;
 /// Duration of the rotation or push to which scale_std applies.
 constexpr double turn_s = 1.0, push_s = 0.3;

@@ -54,7 +54,7 @@ inline constexpr int states = clock + most_clocks;
 
 inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// Measurements at one epoch of the first wheel's clock; NaN where there is none.
+/// Measurements at one epoch of the first wheel's clock; NaN where a sensor has none.
 struct Epoch {
   double time_s = 0.0, dt_s = 0.0;
   double moving_s = 0.0;  ///< time in motion so far

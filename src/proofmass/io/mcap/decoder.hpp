@@ -41,7 +41,7 @@ class Decoder {
 /// All information of a file on a topic.
 struct Topic {
   ChannelRecord channel;
-  Schema schema;       ///< empty if there is none
+  Schema schema;       ///< empty if the file has none for it
   FirstMessage first;  ///< the topic's first message
 };
 
