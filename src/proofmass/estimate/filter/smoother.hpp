@@ -35,6 +35,29 @@ void there_and_back(
   }
 }
 
+/// smooth() and smooth_means(), with the adjoint of either.
+template <class Backwards, StateSpaceModel Model, class Forward, class Backward>
+void smooth_with(const Model& model,
+                 const FilterState<Model::states>& prior,
+                 const Gate& gate,
+                 Forward&& forward,
+                 Backward&& backward) {
+  constexpr int N = Model::states;
+  constexpr std::size_t chunk = N > 12 ? 64 : 128;
+  Backwards later;
+  later.active = active_states(model);
+  there_and_back<StepOf<Model>, chunk>(
+      model.size(), prior,
+      [&](FilterState<N>& state, std::size_t k, StepOf<Model>& step) {
+        advance(model, k, gate, state, step);
+      },
+      forward,
+      [&](std::size_t k, const StepOf<Model>& step) {
+        backward(k, step, std::as_const(later));
+        look_back(later, step);
+      });
+}
+
 /// Filter and fixed-interval smoother over all epochs of a model, in the memory of
 /// there_and_back().
 ///
@@ -47,20 +70,17 @@ void smooth(const Model& model,
             const Gate& gate,
             Forward&& forward,
             Backward&& backward) {
-  constexpr int N = Model::states;
-  constexpr std::size_t chunk = N > 12 ? 64 : 128;
-  BackwardInformation<N> later;
-  later.active = active_states(model);
-  there_and_back<StepOf<Model>, chunk>(
-      model.size(), prior,
-      [&](FilterState<N>& state, std::size_t k, StepOf<Model>& step) {
-        advance(model, k, gate, state, step);
-      },
-      forward,
-      [&](std::size_t k, const StepOf<Model>& step) {
-        backward(k, step, std::as_const(later));
-        look_back(later, step);
-      });
+  smooth_with<BackwardInformation<Model::states>>(model, prior, gate, forward, backward);
+}
+
+/// The same without variances, at the cost of two forward passes: backward(k, step, score).
+template <StateSpaceModel Model, class Forward, class Backward>
+void smooth_means(const Model& model,
+                  const FilterState<Model::states>& prior,
+                  const Gate& gate,
+                  Forward&& forward,
+                  Backward&& backward) {
+  smooth_with<BackwardScore<Model::states>>(model, prior, gate, forward, backward);
 }
 
 }  // namespace proofmass::estimate

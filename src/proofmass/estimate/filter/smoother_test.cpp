@@ -90,6 +90,18 @@ TEST(Smoother, InChunksIsTheSameAsInOnePiece) {
   }
 }
 
+TEST(Smoother, MeansAloneAreThoseOfTheWholeSmoother) {
+  Gauge model;
+  model.jump_at = 120.0;
+  const Gate gate{.huber = 2.0, .limit = 6.0, .patience = 20};
+  const Path whole = smoothed_in_chunks(model, gate);
+  smooth_means(
+      model, start(), gate, [](std::size_t, const auto&) {},
+      [&](std::size_t k, const auto& step, const BackwardScore<4>& later) {
+        EXPECT_EQ(later.mean(step.filtered), whole.means[k]) << "k = " << k;
+      });
+}
+
 TEST(Smoother, CallsForwardRisingAndBackwardFallingOnceForEachEpoch) {
   const Gauge model{.epochs = 257};
   std::vector<std::size_t> forward, backward;

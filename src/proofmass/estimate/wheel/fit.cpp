@@ -283,14 +283,28 @@ void add_nonlinearity(double nonlinearity, WheelFit& fit) {
   add_in_square(fit.turns.std, std::numbers::sqrt2 * nonlinearity / rad_per_turn);
 }
 
-/// Number of measurements that may be averaged before the wheel turns by a twentieth of a radian.
-std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack& track) {
+double top_speed_radps(const WheelPath& path) {
   double fastest = 0.0;
-  for (const Mat<wheel::moving>& at : track.path.moving)
+  for (const Mat<wheel::moving>& at : path.moving)
     fastest = std::max(fastest, std::abs(at(wheel::speed)));
+  return fastest;
+}
+
+/// Number of measurements during which a wheel turns by at most an angle, `turn_rad` from one to
+/// the next.
+std::size_t count_within(double angle_rad, double turn_rad, const WheelReadings& readings) {
   // A short recording keeps at least 50 averages.
   const double most = std::clamp(static_cast<double>(readings.epochs.size()) / 50.0, 1.0, 64.0);
-  return static_cast<std::size_t>(std::clamp(0.05 * readings.rate_hz() / fastest, 1.0, most));
+  return static_cast<std::size_t>(std::clamp(angle_rad / turn_rad, 1.0, most));
+}
+
+/// From averages whose third differences a turning wheel changes little.
+void set_least_variance(double turn_rad, WheelReadings& readings) {
+  constexpr double smooth_rad = 0.05, too_rough_rad = 0.1;
+  const std::size_t each = count_within(smooth_rad, turn_rad, readings);
+  for (PlanarReadings& sensor : readings.sensors)
+    sensor.least_variance_m2ps4 =
+        turn_rad < too_rough_rad ? variance_of_differences(sensor, each) : 0.0;
 }
 
 /// A track of the averaged measurements, on the time line of all of them.
@@ -399,7 +413,10 @@ WheelFit fit_sensors(WheelReadings& readings,
   constexpr int ripple_at = wheel::ripple(S) - wheel::first_of(0);
   if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
     readings.orders = orders_in<S>(readings, track.path);
-  const std::size_t each = readings_to_average(readings, track);
+  constexpr double averaged_rad = 0.2;
+  const double turn_rad = top_speed_radps(track.path) / readings.rate_hz();
+  set_least_variance(turn_rad, readings);
+  const std::size_t each = count_within(averaged_rad, turn_rad, readings);
   WheelReadings coarse = averaged(readings, each);
   WheelTrack coarse_track = spread_track(track, readings, coarse);
   const int rounds = S == 1 && depth == FitDepth::whole ? 4 : 2;

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/estimate/wheel/fit.hpp"
 #include "proofmass/estimate/wheel/settle.hpp"
@@ -36,7 +38,7 @@ inline void add_in_square(double& std, double more) {
 struct Run {
   std::vector<double> angle_rad, speed_radps, accel_radps2;
   Eigen::VectorXd constants{};
-  double turns = 0.0;
+  double turns = 0.0;  ///< of a difference
 };
 
 template <int S>
@@ -44,7 +46,7 @@ Run run_at(const WheelModel<S>& model, const WheelPrior& prior) {
   const std::size_t size = model.size();
   Run run{std::vector<double>(size), std::vector<double>(size), std::vector<double>(size)};
   Gaussian<wheel::states(S)> end = prior_state<S>(prior).x;
-  smooth(
+  smooth_means(
       model, prior_state<S>(prior), wheel_gate,
       [&](std::size_t, const auto& step) { end = step.filtered; },
       [&](std::size_t k, const auto& step, const auto& later) {
@@ -54,7 +56,6 @@ Run run_at(const WheelModel<S>& model, const WheelPrior& prior) {
         run.accel_radps2[k] = now.accel;
       });
   run.constants = end.mean.template tail<wheel::standing(S)>();
-  run.turns = turns_in(model, end).value;
   return run;
 }
 
@@ -76,8 +77,14 @@ inline void widen(Run& change, const Run& other) {
 template <int S>
 class HeldFigures {
  public:
-  HeldFigures(const WheelReadings& readings, const Settled<S>& settled, const WheelPath& about)
+  /// The fit's epochs, time_s, may begin before and end after averaged measurements.
+  HeldFigures(const WheelReadings& readings,
+              const Settled<S>& settled,
+              const WheelPath& about,
+              const std::vector<double>& time_s)
       : readings_(readings),
+        first_s_(time_s.front()),
+        last_s_(time_s.back()),
         settled_(settled),
         about_(about),
         levers_(levers_of(about, readings)),
@@ -87,72 +94,74 @@ class HeldFigures {
   /// Returns false if a run's angle slips relative to the fit's, however small the step: the
   /// differences are then meaningless, and the fit invalid.
   [[nodiscard]] bool add_to(WheelFit& fit) const {
-    if (!add_places(fit)) return false;
-    if (readings_.delay_s.std > 0.0) {
-      const auto change = change_by(&WheelModel<S>::delay_s, readings_.delay_s.std, 1.0);
-      if (!change) return false;
-      add(*change, fit);
-    }
-    return add_rolling_radius(fit) && add_warm_up(fit);
+    std::vector<Change> changes;
+    vary_places(changes);
+    if (readings_.delay_s.std > 0.0)
+      changes.push_back(
+          [this] { return change_by(&WheelModel<S>::delay_s, readings_.delay_s.std, 1.0); });
+    if (readings_.rolling_radius_m.std > 0.0)
+      changes.push_back([this] { return change_by_rolling_radius(); });
+    vary_warm_up(changes);
+    std::vector<std::optional<Run>> found(changes.size());
+    in_parallel(changes.size(), {},
+                [&](std::size_t i, const Progress&) { found[i] = changes[i](); });
+    if (!std::ranges::all_of(found, [](const auto& change) { return change.has_value(); }))
+      return false;
+    for (const std::optional<Run>& change : found) add(*change, fit);
+    return true;
   }
 
  private:
+  using Change = std::function<std::optional<Run>()>;
+
   /// Along each principal direction of their covariance, by less than a standard deviation: if the
   /// recording hardly determines the lever arms, that is not a small step.
-  [[nodiscard]] bool add_places(WheelFit& fit) const {
+  void vary_places(std::vector<Change>& changes) const {
     constexpr double longest_step_m = 2e-3;
     const SymmetricEigen axes = symmetric_eigen(settled_.places_cov);
     for (Eigen::Index i = 0; i < axes.values.size(); ++i) {
       const double std_m = std::sqrt(std::max(axes.values(i), 1e-16));
-      const auto moved = [&](double share) {
+      const auto moved = [this, by = Places(std_m * axes.vectors.col(i))](double share) {
         WheelPrior prior = settled_.prior;
-        *prior.places += share * std_m * axes.vectors.col(i);
+        *prior.places += share * by;
         return run_at(model(), prior);
       };
-      const auto change = change_by(moved, std::min(1.0, longest_step_m / std_m));
-      if (!change) return false;
-      add(*change, fit);
+      changes.push_back([this, moved, share = std::min(1.0, longest_step_m / std_m)] {
+        return change_by(moved, share);
+      });
     }
-    return true;
   }
 
-  [[nodiscard]] bool add_rolling_radius(WheelFit& fit) const {
-    const Uncertain& rolling = readings_.rolling_radius_m;
-    if (!(rolling.std > 0.0)) return true;
+  [[nodiscard]] std::optional<Run> change_by_rolling_radius() const {
+    const double std_m = readings_.rolling_radius_m.std;
     const bool is_range =
         readings_.shakes && !readings_.given_rolling_radius_m && !readings_.found_rolling_radius_m;
     const double share = is_range ? std::numbers::sqrt3 : 1.0;
-    auto change = change_by(&WheelModel<S>::rolling_radius_m, rolling.std, share);
-    if (!change) return false;
-    if (is_range) {
-      const auto other = change_by(&WheelModel<S>::rolling_radius_m, rolling.std, -share);
-      if (!other) return false;
-      widen(*change, *other);
-    }
-    add(*change, fit);
-    return true;
+    auto change = change_by(&WheelModel<S>::rolling_radius_m, std_m, share);
+    if (!is_range || !change) return change;
+    const auto other = change_by(&WheelModel<S>::rolling_radius_m, std_m, -share);
+    if (!other) return other;
+    widen(*change, *other);
+    return change;
   }
 
   /// A warm-up of the biases, as far as the recording does not exclude it: if the speed increases
   /// steadily, it resembles the centripetal force of a longer lever arm.
-  [[nodiscard]] bool add_warm_up(WheelFit& fit) const {
+  void vary_warm_up(std::vector<Change>& changes) const {
     // For the time of these runs; a drift over a longer ramp is not covered.
     constexpr double longest_s = 600.0;
-    if (readings_.time_s.back() - readings_.time_s.front() > longest_s) return true;
+    if (readings_.time_s.back() - readings_.time_s.front() > longest_s) return;
     const SymmetricEigen axes = symmetric_eigen(warm_up_information());
     for (int i = 0; i < 2 * S; ++i) {
       const Mat<2 * S> along = axes.vectors.col(i) / std::sqrt(axes.values(i));
-      const auto moved = [&](double share) {
+      const auto moved = [this, along](double share) {
         Run run = run_anew(warmed_by(share * along));
         for (int axis = 0; axis < 2 * S; ++axis)
           run.constants(bias_of(axis)) += share * along(axis);
         return run;
       };
-      const auto change = change_by(moved, 1.0);
-      if (!change) return false;
-      add(*change, fit);
+      changes.push_back([this, moved] { return change_by(moved, 1.0); });
     }
-    return true;
   }
 
   /// That of the warm-ups as further states, s⁴/m²: from what they change in the innovations of the
@@ -165,12 +174,13 @@ class HeldFigures {
                                               static_cast<Eigen::Index>(pass.innovations.size()));
     };
     Eigen::MatrixXf effect(base_levers_.innovations.size(), 2 * S);
-    for (int axis = 0; axis < 2 * S; ++axis) {
+    in_parallel(2 * S, {}, [&](std::size_t of, const Progress&) {
+      const auto axis = static_cast<int>(of);
       const FoundPlaces pass = pass_of(warmed_by(step_mps2 * Mat<2 * S>::Unit(axis)));
       const auto by = static_cast<float>(1.0 / (step_mps2 * settled_.widened(bias_of(axis))));
       const Eigen::ArrayXf change = by * (innovations(pass) - innovations(base_levers_));
       effect.col(axis) = change.isFinite().select(change, 0.0F);
-    }
+    });
     return (effect.transpose() * effect).template cast<double>() +
            Eigen::MatrixXd::Identity(2 * S, 2 * S) / square(warm_up_std_mps2);
   }
@@ -213,8 +223,17 @@ class HeldFigures {
     for (std::vector<double> Run::* of : {&Run::angle_rad, &Run::speed_radps, &Run::accel_radps2})
       std::ranges::transform(run.*of, base_.*of, (run.*of).begin(), difference);
     run.constants = reach * (run.constants - base_.constants);
-    run.turns = reach * (run.turns - base_.turns);
+    const std::size_t last = run.angle_rad.size() - 1;
+    run.turns = (between(run.angle_rad, last - 1, last_s_) - between(run.angle_rad, 0, first_s_)) /
+                rad_per_turn;
     return run;
+  }
+
+  /// A figure of the runs at a time, by the line through its values at epochs k and k + 1.
+  [[nodiscard]] double between(const std::vector<double>& of, std::size_t k, double time_s) const {
+    const double* at = readings_.time_s.data() + k;
+    if (!(at[1] > at[0])) return of[k + 1];
+    return std::lerp(of[k], of[k + 1], (time_s - at[0]) / (at[1] - at[0]));
   }
 
   [[nodiscard]] WheelModel<S> model() const {
@@ -237,10 +256,8 @@ class HeldFigures {
     for (std::size_t k = 0; k < series.time_s.size(); ++k) {
       const auto& times = readings_.time_s;
       while (at + 2 < times.size() && times[at + 1] <= series.time_s[k]) ++at;
-      const double part =
-          std::clamp((series.time_s[k] - times[at]) / (times[at + 1] - times[at]), 0.0, 1.0);
       const auto off = [&](const std::vector<double>& of) {
-        return std::lerp(of[at], of[at + 1], part);
+        return between(of, at, series.time_s[k]);
       };
       add_in_square(series.angle_std_rad[k], off(by.angle_rad));
       add_in_square(series.filtered_angle_std_rad[k], off(by.angle_rad));
@@ -252,6 +269,7 @@ class HeldFigures {
   }
 
   const WheelReadings& readings_;
+  double first_s_, last_s_;
   const Settled<S>& settled_;
   const WheelPath& about_;
   WheelLevers levers_;
@@ -270,10 +288,10 @@ void add_held_figures(const Settled<S>& settled,
                       const WheelPath& path,
                       WheelFit& fit) {
   WheelFit with = fit;
-  bool added = HeldFigures<S>(averaged, settled, averaged_path).add_to(with);
+  bool added = HeldFigures<S>(averaged, settled, averaged_path, readings.time_s).add_to(with);
   if (!added && averaged.epochs.size() < readings.epochs.size()) {
     with = fit;
-    added = HeldFigures<S>(readings, settled, path).add_to(with);
+    added = HeldFigures<S>(readings, settled, path, readings.time_s).add_to(with);
   }
   if (!added) {
     with = std::move(fit);

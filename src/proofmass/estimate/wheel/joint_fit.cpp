@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/rests.hpp"
@@ -254,10 +255,15 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
   // The encoder is on the clock of the first sensor.
   WheelOptions of_second = options;
   if (!options.clocks_shared) of_second.encoder.reset();
-  for (const WheelSensor& sensor : sensors) {
-    auto single = fit_single(sensor, depth, pair.singles.empty() ? options : of_second);
-    if (!single) return single.error();
-    pair.singles.push_back(std::move(single).value());
+  std::vector<std::optional<Result<Single>>> fits(sensors.size());
+  in_parallel(sensors.size(), options.progress, [&](std::size_t s, Progress progress) {
+    WheelOptions of_sensor = s == 0 ? options : of_second;
+    of_sensor.progress = std::move(progress);
+    fits[s] = fit_single(sensors[s], depth, of_sensor);
+  });
+  for (auto& single : fits) {
+    if (!*single) return single->error();
+    pair.singles.push_back(std::move(*single).value());
   }
   if (pair.singles.size() == 1) return pair;
   // Less than a hundredth of a turn does not determine the direction.

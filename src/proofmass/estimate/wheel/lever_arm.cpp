@@ -1,6 +1,7 @@
 #include <limits>
 #include <optional>
 
+#include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/estimate/wheel/colour.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
@@ -8,16 +9,28 @@
 namespace proofmass::estimate {
 namespace {
 
+/// f at each point.
+template <class Function>
+std::vector<double> values_of(const Function& f, const std::vector<Places>& points) {
+  std::vector<double> values(points.size());
+  in_parallel(points.size(), {}, [&](std::size_t i, const Progress&) { values[i] = f(points[i]); });
+  return values;
+}
+
 /// Gradient of f at x by central differences of the given steps.
 template <class Function>
 Eigen::VectorXd gradient_of(const Function& f, const Places& x, const Places& step) {
+  std::vector<Places> points;
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    for (const double way : {1.0, -1.0}) {
+      points.push_back(x);
+      points.back()(i) += way * step(i);
+    }
+  const std::vector<double> values = values_of(f, points);
   Eigen::VectorXd gradient(x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    Places up = x, down = x;
-    up(i) += step(i);
-    down(i) -= step(i);
-    gradient(i) = (f(up) - f(down)) / (2.0 * step(i));
-  }
+  std::size_t next = 0;
+  for (Eigen::Index i = 0; i < x.size(); ++i, next += 2)
+    gradient(i) = (values[next] - values[next + 1]) / (2.0 * step(i));
   return gradient;
 }
 
@@ -26,23 +39,25 @@ Eigen::VectorXd gradient_of(const Function& f, const Places& x, const Places& st
 template <class Function>
 Eigen::MatrixXd hessian_of(const Function& f, const Places& x, const Places& step) {
   const Eigen::Index n = x.size();
-  const double here = f(x);
-  Eigen::MatrixXd hessian(n, n);
-  Eigen::VectorXd up(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    Places y = x;
-    y(i) += step(i);
-    up(i) = f(y);
-    y(i) = x(i) - step(i);
-    hessian(i, i) = (up(i) - 2.0 * here + f(y)) / (step(i) * step(i));
-  }
+  std::vector<Places> points{x};
+  const auto add = [&](Eigen::Index i, double by_i, Eigen::Index j, double by_j) {
+    points.push_back(x);
+    points.back()(i) += by_i * step(i);
+    points.back()(j) += by_j * step(j);
+  };
+  for (Eigen::Index i = 0; i < n; ++i) add(i, 1.0, i, 0.0);
+  for (Eigen::Index i = 0; i < n; ++i) add(i, -1.0, i, 0.0);
   for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < i; ++j) {
-      Places y = x;
-      y(i) += step(i);
-      y(j) += step(j);
-      hessian(i, j) = hessian(j, i) = (f(y) - up(i) - up(j) + here) / (step(i) * step(j));
-    }
+    for (Eigen::Index j = 0; j < i; ++j) add(i, 1.0, j, 1.0);
+  const std::vector<double> values = values_of(f, points);
+  const double here = values.front();
+  const double *up = values.data() + 1, *down = up + n, *both = down + n;
+  Eigen::MatrixXd hessian(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    hessian(i, i) = (up[i] - 2.0 * here + down[i]) / (step(i) * step(i));
+    for (Eigen::Index j = 0; j < i; ++j)
+      hessian(i, j) = hessian(j, i) = (*both++ - up[i] - up[j] + here) / (step(i) * step(j));
+  }
   return hessian;
 }
 
@@ -63,16 +78,17 @@ std::optional<Eigen::MatrixXd> inverse_information(const Eigen::MatrixXd& hessia
 template <int S>
 FoundPlaces likeliest_places(const WheelModel<S>& model,
                              const Excerpt<S>& excerpt,
-                             WheelPrior prior,
+                             const WheelPrior& prior,
                              const PlacesPrior& belief) {
   const Eigen::MatrixXd information = positive_inverse(belief.cov);
   const double least_information = symmetric_eigen(information).values.minCoeff();
   const auto likelihood = [&](const Places& places) {
-    prior.places = places;
+    WheelPrior with = prior;
+    with.places = places;
     auto state = excerpt.state;
-    reset_constants<S>(prior, state.x);
+    reset_constants<S>(with, state.x);
     const Places off = places - belief.mean;
-    return score_run(model, state, excerpt.first, excerpt.last).log_likelihood -
+    return log_likelihood_of(model, state, excerpt.first, excerpt.last) -
            0.5 * off.dot(information * off);
   };
   FoundPlaces found{*prior.places, Eigen::MatrixXd::Identity(2 * S, 2 * S) / least_information};
@@ -205,7 +221,7 @@ Eigen::VectorXd widening(WheelModel<S> model,
   std::array lengths{ScoreBlocks<S>(block_s), ScoreBlocks<S>(2.0 * block_s),
                      ScoreBlocks<S>(4.0 * block_s)};
   Readings<wheel::states(S), WheelModel<S>::channels> readings;
-  smooth(
+  smooth_means(
       model, state, wheel_gate, [](std::size_t, const auto&) {},
       [&](std::size_t k, const auto& step, const auto& later) {
         model.measure(later.mean(step.filtered), k, readings);
@@ -229,11 +245,11 @@ Eigen::VectorXd widening(WheelModel<S> model,
 
 template FoundPlaces likeliest_places(const WheelModel<1>&,
                                       const Excerpt<1>&,
-                                      WheelPrior,
+                                      const WheelPrior&,
                                       const PlacesPrior&);
 template FoundPlaces likeliest_places(const WheelModel<2>&,
                                       const Excerpt<2>&,
-                                      WheelPrior,
+                                      const WheelPrior&,
                                       const PlacesPrior&);
 template FoundPlaces places_by_levers(WheelModel<1>,
                                       const WheelLevers&,

@@ -99,14 +99,9 @@ FilterState<wheel::states(S)> prior_state(const WheelPrior& prior) {
   return state;
 }
 
-/// Prediction quality of a forward run. `lost`, from LostShare, compares runs with different noise
-/// parameters: a run with the correct phase scores near 0, a run that has lost it above a half.
-struct WheelScore {
-  double lost = 0.0;
-  double log_likelihood = 0.0;
-};
-
-/// Mean of min(y²/c², 1) over the innovations y, c = 0.3 g.
+/// Prediction quality of a forward run, comparable between runs with different noise parameters:
+/// mean of min(y²/c², 1) over the innovations y, c = 0.3 g. Near 0 with the correct phase, above a
+/// half once it is lost.
 class LostShare {
  public:
   explicit LostShare(double gravity_mps2) : c2_(std::pow(0.3 * gravity_mps2, 2)) {}
@@ -120,9 +115,12 @@ class LostShare {
     }
   }
   /// 1 without measurements.
-  [[nodiscard]] double share() const {
-    return readings_ > 0 ? sum_ / static_cast<double>(readings_) : 1.0;
+  [[nodiscard]] double share() const { return readings_ > 0 ? share_of(readings_) : 1.0; }
+  /// Lower bound of share() after further innovations, `readings` in all.
+  [[nodiscard]] double share_of(std::size_t readings) const {
+    return sum_ / static_cast<double>(readings);
   }
+  [[nodiscard]] std::size_t readings() const { return readings_; }
 
  private:
   double c2_, sum_ = 0.0;
@@ -136,51 +134,64 @@ class LostShare {
   return 2.0 * huber * std::min(off, wheel_gate.limit) - huber * huber;
 }
 
+/// Of the innovations of epochs [first, last), with Huber's ρ; −∞ if it is not finite.
 template <int S>
-WheelScore score_run(const WheelModel<S>& model,
-                     FilterState<wheel::states(S)> state,
-                     std::size_t first,
-                     std::size_t last) {
-  LostShare lost(model.gravity_mps2);
-  WheelScore score;
+double log_likelihood_of(const WheelModel<S>& model,
+                         FilterState<wheel::states(S)> state,
+                         std::size_t first,
+                         std::size_t last) {
+  double log_likelihood = 0.0;
   filter(model, first, last, wheel_gate, state, [&](std::size_t, const auto& step) {
-    lost.add(step);
     for (int i = 0; i < step.count; ++i) {
       const auto& u = step.updates[static_cast<std::size_t>(i)];
-      score.log_likelihood -=
+      log_likelihood -=
           0.5 * (std::log(2.0 * std::numbers::pi * u.expected) + surprise(std::sqrt(u.nis())));
     }
   });
-  score.lost = lost.share();
-  if (std::isfinite(score.log_likelihood)) return score;
-  return {1.0, -std::numeric_limits<double>::infinity()};
+  return std::isfinite(log_likelihood) ? log_likelihood : -std::numeric_limits<double>::infinity();
 }
 
-/// Smooths and stores the trajectory; returns the state after the last epoch.
+/// A smoothed trajectory, the state after its last epoch, and LostShare of its innovations.
 template <int S>
-Gaussian<wheel::states(S)> trace_path(const WheelModel<S>& model,
-                                      const FilterState<wheel::states(S)>& prior,
-                                      WheelPath& path) {
+struct Traced {
+  WheelPath path;
+  Gaussian<wheel::states(S)> end;
+  double lost = 1.0;
+};
+
+template <int S>
+Traced<S> trace_path(const WheelModel<S>& model, const FilterState<wheel::states(S)>& prior) {
   using Model = WheelModel<S>;
-  Gaussian<Model::states> end = prior.x;
-  std::vector<Mat<wheel::moving>> moving(model.size());
-  smooth(
+  Traced<S> traced;
+  traced.end = prior.x;
+  std::vector<Mat<wheel::moving>>& moving = traced.path.moving;
+  moving.resize(model.size());
+  LostShare lost(model.gravity_mps2);
+  smooth_means(
       model, prior, wheel_gate,
-      [&](std::size_t, const StepOf<Model>& step) { end = step.filtered; },
-      [&](std::size_t k, const StepOf<Model>& step,
-          const BackwardInformation<Model::states>& later) {
+      [&](std::size_t, const StepOf<Model>& step) {
+        traced.end = step.filtered;
+        lost.add(step);
+      },
+      [&](std::size_t k, const StepOf<Model>& step, const BackwardScore<Model::states>& later) {
         moving[k] = later.mean(step.filtered).template head<wheel::moving>();
       });
-  path.moving = std::move(moving);
-  path.standing = end.mean.template tail<wheel::standing(S)>();
-  return end;
+  traced.path.standing = traced.end.mean.template tail<wheel::standing(S)>();
+  traced.lost = lost.share();
+  return traced;
 }
 
-/// Sets each measurement's variance from the neighbouring innovations.
+/// Variance of white noise in a sensor's measurements, from the third differences of averages over
+/// `each` of them: a smooth motion contributes little, a third difference of white noise has
+/// 1 + 9 + 9 + 1 times its variance. Of the quieter axis.
+[[nodiscard]] double variance_of_differences(const PlanarReadings& sensor, std::size_t each);
+
+/// Sets each measurement's variance from the neighbouring innovations, not below the sensor's
+/// least_variance_m2ps4.
 template <int S>
 void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings);
 
-/// A part of the recording to tune on: all of it or, if it is long, the interval of 20 000 epochs
+/// A part of the recording to tune on: all of it or, if it is long, the interval of 8 000 epochs
 /// with the largest speed change, with the filter's state at its beginning.
 template <int S>
 struct Excerpt {
@@ -199,7 +210,7 @@ struct TunedNoise {
 /// Maximum-likelihood motion noise on the excerpt: each parameter in turn by steps of a shrinking
 /// factor, from `first_factor` down.
 template <int S>
-[[nodiscard]] TunedNoise tune_noise(WheelModel<S> model,
+[[nodiscard]] TunedNoise tune_noise(const WheelModel<S>& model,
                                     const Excerpt<S>& excerpt,
                                     double first_factor);
 
@@ -220,7 +231,7 @@ struct FoundPlaces {
 template <int S>
 [[nodiscard]] FoundPlaces likeliest_places(const WheelModel<S>& model,
                                            const Excerpt<S>& excerpt,
-                                           WheelPrior prior,
+                                           const WheelPrior& prior,
                                            const PlacesPrior& belief);
 
 /// Lever arms as additional states, about a path: as far as the change of the mean force with speed

@@ -37,7 +37,8 @@
 //
 // A sensor's filter delays the motion by τ. Rotating quantities (gravity and hub acceleration) are
 // delayed by atan(ω τ) instead of ω τ and attenuated by the cosine of that (one pole). Its
-// gyroscope, if any, measures (1 + s_g) ω + b_g about the axle, with the same delay.
+// gyroscope, if any, measures (1 + s_g) ω + b_g about the axle, with the same delay. Averages of
+// measurements whose times have the variance σ² attenuate rotating quantities by exp(−ω² σ²/2).
 //
 // An encoder on the axle shows ψ with d ψ = θ + o + d Σ c_n cos nψ + s_n sin nψ, n = 1 (its disc
 // is off centre) and 2 (it is warped), d = ±1 its direction and o its offset; without delay.
@@ -120,6 +121,9 @@ struct PlanarReadings {
   std::vector<double> speed_radps{};
   double speed_variance = 0.0;  ///< variance of each, rad²/s²
   std::size_t saturated_speeds = 0;
+  /// Lower bound of variance_m2ps4. With innovations alone, a filter that follows every measurement
+  /// would find no noise, and then overweight each of them.
+  double least_variance_m2ps4 = 0.0;
 
   [[nodiscard]] bool has(std::size_t row) const {
     return !std::isnan(u_mps2[row]) && !std::isnan(v_mps2[row]);
@@ -174,6 +178,8 @@ struct WheelEpoch {
   std::array<std::int64_t, 2> row{no_row, no_row};
   /// Wheel static: the measurements around keep their values, see mark_standing().
   bool stands = false;
+  /// Variance of the times of the measurements averaged in this epoch.
+  double spread_s2 = 0.0;
 };
 
 /// A wheel whose measurements are constant for this long is static: its speed is 0 with this
@@ -341,7 +347,7 @@ struct WheelModel {
       const auto first = static_cast<std::size_t>(out.count);
       const Mat<2> lever =
           levers == nullptr ? Mat<2>(now.speed * now.speed, now.accel) : (*levers)[k];
-      read_sensor(at_state, now, lever, s, out);
+      read_sensor(at_state, now, lever, s, (*epochs)[k].spread_s2, out);
       auto& u = out.rows[first];
       auto& v = out.rows[first + 1];
       u.value = sensor.u_mps2[at];
@@ -437,6 +443,7 @@ struct WheelModel {
                    const Motion& now,
                    const Mat<2>& lever,
                    int s,
+                   double spread_s2,
                    Readings<states, channels>& out) const {
     const int at = wheel::first_of(s);
     const double w = now.speed, al = now.accel, late = w * delay_s;
@@ -446,7 +453,8 @@ struct WheelModel {
     const double sin_phi = std::sin(phi), cos_phi = std::cos(phi);
     const int place = wheel::places(Sensors) + 2 * s;
     const double ru = x(place), rv = x(place + 1);
-    const double g = weaker * gravity_mps2, hub = -weaker * rolling_radius_m * al;
+    const double shown = weaker * std::exp(-0.5 * w * w * spread_s2);
+    const double g = shown * gravity_mps2, hub = -shown * rolling_radius_m * al;
     // Forces and their derivatives in the sensor's true axes.
     const double turn_u = g * cos_phi - hub * sin_phi;   // ∂f_u/∂φ
     const double turn_v = -g * sin_phi - hub * cos_phi;  // ∂f_v/∂φ
@@ -454,11 +462,12 @@ struct WheelModel {
     const double fv = turn_u - w * w * rv + al * ru;
     // By the speed: through the centripetal force, and through the rotating force, which is less
     // delayed and attenuated.
-    const double sooner = delay_s * (1.0 - weaker2), fade = late * delay_s * weaker2;
+    const double sooner = delay_s * (1.0 - weaker2);
+    const double fade = late * delay_s * weaker2 + w * spread_s2;
     const double by_w_u = -2.0 * w * ru + sooner * turn_u + fade * turn_v;
     const double by_w_v = -2.0 * w * rv + sooner * turn_v - fade * turn_u;
-    const double by_al_u = -rv - weaker * rolling_radius_m * cos_phi;
-    const double by_al_v = ru + weaker * rolling_radius_m * sin_phi;
+    const double by_al_u = -rv - shown * rolling_radius_m * cos_phi;
+    const double by_al_v = ru + shown * rolling_radius_m * sin_phi;
     Mat<states> du = turn_u * now.by_angle + by_w_u * now.by_speed + by_al_u * now.by_accel;
     Mat<states> dv = turn_v * now.by_angle + by_w_v * now.by_speed + by_al_v * now.by_accel;
     if (s > 0) {

@@ -110,6 +110,13 @@ TEST(WheelModel, JacobianWithRippleDelayAndGyroscopesEqualsDifferences) {
   expect_jacobian_of_differences(epoch, 6);
 }
 
+TEST(WheelModel, JacobianOfAveragesEqualsDifferences) {
+  OneEpoch<2> epoch(0.3, 0.7);
+  epoch.model.delay_s = 0.01;
+  epoch.epochs[0].spread_s2 = 1e-4;
+  expect_jacobian_of_differences(epoch, 4);
+}
+
 TEST(WheelModel, JacobianWithAnEncoderEqualsDifferences) {
   const EncoderReadings encoder{
       .angle_rad = {3.3}, .age_s = {0.004}, .variance_rad2 = {1e-6}, .direction = -1.0};
@@ -154,6 +161,38 @@ TEST(WheelModel, AFilterReadsGravityLaterAndWeaker) {
   const auto& rows = epoch.at(x).rows;
   EXPECT_NEAR(rows[0].predicted, read.imag(), 1e-12);
   EXPECT_NEAR(rows[1].predicted, read.real(), 1e-12);
+}
+
+// Five measurements at irregular times, a fifth of a radian apart, against the model of their mean.
+TEST(WheelModel, PredictsTheMeanOfMeasurementsOnATurningWheel) {
+  constexpr std::array times_s{0.0, 0.008, 0.009, 0.02, 0.031};
+  constexpr double speed_radps = 6.4, radius_m = 0.1;
+  WheelReadings readings;
+  readings.gravity_mps2 = 9.8;
+  PlanarReadings& sensor = readings.sensors.emplace_back();
+  for (std::size_t k = 0; k < times_s.size(); ++k) {
+    const double angle = 0.9 + speed_radps * times_s[k];
+    readings.time_s.push_back(times_s[k]);
+    readings.epochs.push_back({k == 0 ? 0.0 : times_s[k] - times_s[k - 1],
+                               {static_cast<std::int64_t>(k), WheelEpoch::no_row}});
+    sensor.u_mps2.push_back(9.8 * std::sin(angle) - square(speed_radps) * radius_m);
+    sensor.v_mps2.push_back(9.8 * std::cos(angle));
+    sensor.variance_m2ps4.push_back(1.0);
+  }
+  const WheelReadings mean = averaged(readings, times_s.size());
+  ASSERT_EQ(mean.epochs.size(), 1U);
+  OneEpoch<1> epoch(0.0, 0.0);
+  epoch.epochs = mean.epochs;
+  State<1> x = State<1>::Zero();
+  x(wheel::angle) = 0.9 + speed_radps * mean.time_s[0];
+  x(wheel::speed) = speed_radps;
+  x(place_of(1, 0)) = radius_m;
+  const auto& rows = epoch.at(x).rows;
+  // The mean of a third power of the times remains: (ω t)³ g / 6.
+  EXPECT_NEAR(rows[0].predicted, mean.sensors[0].u_mps2[0], 2e-4);
+  EXPECT_NEAR(rows[1].predicted, mean.sensors[0].v_mps2[0], 2e-4);
+  epoch.epochs[0].spread_s2 = 0.0;
+  EXPECT_GT(std::abs(epoch.at(x).rows[0].predicted - mean.sensors[0].u_mps2[0]), 0.01);
 }
 
 // The same force by differentiating the position of a point in the complex plane twice

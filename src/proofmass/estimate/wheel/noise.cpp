@@ -1,3 +1,7 @@
+#include <numeric>
+#include <span>
+
+#include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
 
@@ -104,28 +108,6 @@ void gather(const WheelReadings& readings,
   encoder.readings += 1.0;
 }
 
-/// Variance of white noise in the measurements from their third differences, to which a slowly
-/// rotating wheel contributes little; 0 if it turns by more than a tenth of a radian. With
-/// innovations alone, a filter that follows every measurement would find no noise, and then
-/// overweight each of them. A third difference of white noise has 1 + 9 + 9 + 1 times its variance.
-double least_variance(const PlanarReadings& sensor, double rate_hz, const WheelPath& path) {
-  constexpr double smooth_rad = 0.1, gain = 20.0;
-  for (const Mat<wheel::moving>& at : path.moving)
-    if (!(std::abs(at(wheel::speed)) < smooth_rad * rate_hz)) return 0.0;
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::vector<double>* axis : {&sensor.u_mps2, &sensor.v_mps2}) {
-    std::vector<double> differences;
-    for (std::size_t k = 3; k < axis->size(); ++k) {
-      const double third =
-          (*axis)[k] - 3.0 * (*axis)[k - 1] + 3.0 * (*axis)[k - 2] - (*axis)[k - 3];
-      if (!std::isnan(third)) differences.push_back(third);
-    }
-    const auto std = robust_std(differences);
-    least = std::min(least, std ? square(*std) / gain : 0.0);
-  }
-  return least;
-}
-
 /// Residuals of a sensor's two axes about a path, and the direction perpendicular to gravity.
 struct Misfit {
   double u, v, across_u, across_v;
@@ -207,6 +189,26 @@ constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e5, 1e8, 1e-4};
 
 }  // namespace
 
+double variance_of_differences(const PlanarReadings& sensor, std::size_t each) {
+  constexpr double gain = 1.0 + 9.0 + 9.0 + 1.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>* axis : {&sensor.u_mps2, &sensor.v_mps2}) {
+    std::vector<double> differences;
+    std::array<double, 4> means{};
+    for (std::size_t block = 0; (block + 1) * each <= axis->size(); ++block) {
+      const auto values = std::span(*axis).subspan(block * each, each);
+      // NaN where a measurement is missing: the mean of the others is of another time.
+      const double mean = std::reduce(values.begin(), values.end()) / static_cast<double>(each);
+      means = {means[1], means[2], means[3], mean};
+      const double third = means[3] - 3.0 * means[2] + 3.0 * means[1] - means[0];
+      if (block >= 3 && !std::isnan(third)) differences.push_back(third);
+    }
+    const auto std = robust_std(differences);
+    least = std::min(least, std ? square(*std) / gain : 0.0);
+  }
+  return static_cast<double>(each) * least;
+}
+
 template <int S>
 void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings) {
   const double start_s = readings.time_s.front();
@@ -232,21 +234,18 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
     if (gyros[s].readings > 20.0) readings.sensors[s].speed_variance = gyros[s].variance();
     const VarianceProfile profile(stretches[s], length_s);
     if (profile.empty()) continue;
-    const double least = model.about == nullptr ? 0.0
-                                                : least_variance(readings.sensors[s],
-                                                                 readings.rate_hz(), *model.about);
     for (std::size_t k = 0; k < readings.epochs.size(); ++k) {
       const std::int64_t row = readings.epochs[k].row[s];
       if (row != WheelEpoch::no_row)
-        readings.sensors[s].variance_m2ps4[static_cast<std::size_t>(row)] =
-            std::max(profile.at(readings.time_s[k] - start_s), least);
+        readings.sensors[s].variance_m2ps4[static_cast<std::size_t>(row)] = std::max(
+            profile.at(readings.time_s[k] - start_s), readings.sensors[s].least_variance_m2ps4);
     }
   }
 }
 
 template <int S>
 Excerpt<S> excerpt_to_tune(const WheelModel<S>& model, const WheelPrior& prior) {
-  constexpr std::size_t most_epochs = 20'000, parts = 4;
+  constexpr std::size_t most_epochs = 8'000, parts = 4;
   const std::size_t size = model.size();
   auto state = prior_state<S>(prior);
   Excerpt<S> best{0, std::min(size, most_epochs), state};
@@ -299,30 +298,32 @@ TunedNoise climb(const Likelihood& likelihood, const WheelNoise& start, double f
 }  // namespace
 
 template <int S>
-TunedNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt, double first_factor) {
+TunedNoise tune_noise(const WheelModel<S>& model, const Excerpt<S>& excerpt, double first_factor) {
   const auto likelihood = [&](const WheelNoise& noise) {
-    model.noise = noise;
-    return score_run(model, excerpt.state, excerpt.first, excerpt.last).log_likelihood;
+    auto with = model;
+    with.noise = noise;
+    return log_likelihood_of(with, excerpt.state, excerpt.first, excerpt.last);
   };
   WheelNoise start = model.noise;
   start.snap_psd = std::max(start.snap_psd, lowest.snap_psd);
-  const TunedNoise rough = climb(likelihood, start, first_factor);
   // The likelihood has two maxima, a motion driven by jerk and one by snap, with low values in
   // between.
-  WheelNoise other = rough.noise;
-  const bool by_jerk = rough.noise.jerk_psd > rough.noise.snap_psd;
-  (by_jerk ? other.snap_psd : other.jerk_psd) =
-      std::max(rough.noise.jerk_psd, rough.noise.snap_psd);
-  (by_jerk ? other.jerk_psd : other.snap_psd) = by_jerk ? lowest.jerk_psd : lowest.snap_psd;
-  const TunedNoise smooth = climb(likelihood, other, first_factor);
-  return smooth.log_likelihood > rough.log_likelihood ? smooth : rough;
+  std::array<WheelNoise, 2> starts{start, start};
+  const double most_psd = std::max(start.jerk_psd, start.snap_psd);
+  starts[1].jerk_psd = start.jerk_psd > start.snap_psd ? lowest.jerk_psd : most_psd;
+  starts[1].snap_psd = start.jerk_psd > start.snap_psd ? most_psd : lowest.snap_psd;
+  std::array<TunedNoise, 2> found;
+  in_parallel(2, {}, [&](std::size_t i, const Progress&) {
+    found[i] = climb(likelihood, starts[i], first_factor);
+  });
+  return found[1].log_likelihood > found[0].log_likelihood ? found[1] : found[0];
 }
 
 template void settle_variance(const WheelModel<1>&, const WheelPrior&, WheelReadings&);
 template void settle_variance(const WheelModel<2>&, const WheelPrior&, WheelReadings&);
 template Excerpt<1> excerpt_to_tune(const WheelModel<1>&, const WheelPrior&);
 template Excerpt<2> excerpt_to_tune(const WheelModel<2>&, const WheelPrior&);
-template TunedNoise tune_noise(WheelModel<1>, const Excerpt<1>&, double);
-template TunedNoise tune_noise(WheelModel<2>, const Excerpt<2>&, double);
+template TunedNoise tune_noise(const WheelModel<1>&, const Excerpt<1>&, double);
+template TunedNoise tune_noise(const WheelModel<2>&, const Excerpt<2>&, double);
 
 }  // namespace proofmass::estimate

@@ -155,11 +155,10 @@ RippleOrders orders_in(const WheelReadings& readings, const WheelPath& path) {
 template <int S>
 void improve(const WheelReadings& readings, const Settled<S>& settled, WheelTrack& track) {
   const auto model = held_model<S>(readings, settled.noise, track.path);
-  WheelPath path = track.path;
-  const auto end = trace_path(model, prior_state<S>(settled.prior), path);
-  track.path = std::move(path);
+  Traced<S> traced = trace_path(model, prior_state<S>(settled.prior));
+  track.path = std::move(traced.path);
   track.noise = settled.noise;
-  track.beginning.angle_rad = end.mean(wheel::start);
+  track.beginning.angle_rad = traced.end.mean(wheel::start);
   track.beginning.speed_radps = track.path.moving.front()(wheel::speed);
 }
 

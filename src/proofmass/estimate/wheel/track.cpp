@@ -65,15 +65,24 @@ Beginning seek_beginning(const WheelReadings& readings, const WheelNoise& noise)
   const double phase = first_phase(readings.sensors.front());
   Beginning best;
   double best_lost = std::numeric_limits<double>::infinity();
+  std::size_t innovations = 0;  // of a whole window
   for (const double speed : speeds_to_try(readings.rate_hz(), speed_step_radps))
     for (int quarter = 0; quarter < 4; ++quarter) {
       const Beginning candidate{phase + quarter * std::numbers::pi / 2.0, 0.6, speed,
                                 0.7 * speed_step_radps};
-      const auto prior = prior_state<1>({candidate, seeking_prior, {}});
-      const double lost = score_run(model, prior, 0, last).lost;
+      auto state = prior_state<1>({candidate, seeking_prior, {}});
+      StepOf<WheelModel<1>> step;
+      LostShare lost(readings.gravity_mps2);
       // A later candidate must be clearly better: at rest, many explain little.
-      if (lost >= 0.95 * best_lost) continue;
-      best_lost = lost;
+      const double most_lost = 0.95 * best_lost;
+      for (std::size_t k = 0; k < last; ++k) {
+        advance(model, k, wheel_gate, state, step);
+        lost.add(step);
+        if (innovations > 0 && lost.share_of(innovations) >= most_lost) break;
+      }
+      if (innovations == 0) innovations = lost.readings();
+      if (lost.readings() < innovations || lost.share() >= most_lost) continue;
+      best_lost = lost.share();
       best = candidate;
     }
   return best;
@@ -145,15 +154,19 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
                     .epochs = {},
                     .sensors = std::vector<PlanarReadings>(readings.sensors.size())};
   if (readings.encoder) out.encoder = averaged(*readings.encoder, readings.time_s, each);
-  for (std::size_t s = 0; s < readings.sensors.size(); ++s)
-    out.sensors[s].speed_variance = readings.sensors[s].speed_variance / static_cast<double>(each);
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
+    const PlanarReadings& sensor = readings.sensors[s];
+    out.sensors[s].speed_variance = sensor.speed_variance / static_cast<double>(each);
+    out.sensors[s].least_variance_m2ps4 = sensor.least_variance_m2ps4 / static_cast<double>(each);
+  }
   const std::span all(readings.epochs);
   for (std::size_t first = 0; first < all.size(); first += each) {
     const auto epochs = all.subspan(first, std::min(each, all.size() - first));
-    double time_s = 0.0;
-    for (std::size_t k = first; k < first + epochs.size(); ++k)
-      time_s += readings.time_s[k] / static_cast<double>(epochs.size());
+    Moments times_s;
+    for (std::size_t k = first; k < first + epochs.size(); ++k) times_s.add(readings.time_s[k]);
+    const double time_s = times_s.mean;
     WheelEpoch averaged;
+    averaged.spread_s2 = times_s.squares / static_cast<double>(times_s.count);
     averaged.stands = std::ranges::all_of(epochs, &WheelEpoch::stands);
     for (std::size_t s = 0; s < readings.sensors.size(); ++s)
       averaged.row[s] = append_average(readings.sensors[s], s, epochs, out.sensors[s]);
@@ -167,22 +180,21 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
 WheelTrack find_track(WheelReadings& readings, std::size_t first) {
   PM_EXPECTS(readings.sensors.size() == 1 && readings.epochs.size() >= 2);
   WheelTrack best;
-  double best_lost = std::numeric_limits<double>::infinity();
+  best.lost = std::numeric_limits<double>::infinity();
   for (std::size_t i = first; i < seeks.size(); ++i) {
     const Seek& seek = seeks[i];
     set_variance(readings, seek.accel_std_mps2);
     const auto model = wheel_model<1>(readings, seek.noise);
     const Beginning beginning = seek_beginning(readings, seek.noise);
-    const auto prior = prior_state<1>({beginning, seeking_prior, {}});
-    const double lost = score_run(model, prior, 0, model.size()).lost;
+    Traced<1> traced = trace_path(model, prior_state<1>({beginning, seeking_prior, {}}));
     // A filter that follows every vibration predicts slightly better without being better.
-    if (lost >= 0.6 * best_lost) continue;
-    best_lost = lost;
-    best = {beginning, seek.noise, {}, lost};
-    (void)trace_path(model, prior, best.path);
-    best.beginning = {best.path.moving.front()(wheel::angle), 0.2,
-                      best.path.moving.front()(wheel::speed), beginning.speed_std_radps};
-    if (lost < 0.3) break;
+    if (traced.lost >= 0.6 * best.lost) continue;
+    const Mat<wheel::moving>& at = traced.path.moving.front();
+    best = {{at(wheel::angle), 0.2, at(wheel::speed), beginning.speed_std_radps},
+            seek.noise,
+            std::move(traced.path),
+            traced.lost};
+    if (best.lost < 0.3) break;
   }
   return best;
 }
