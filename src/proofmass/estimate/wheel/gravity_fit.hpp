@@ -77,7 +77,7 @@ class GravityFit {
 
   [[nodiscard]] Uncertain figure(int at) const { return {at_(at), std_(at)}; }
   [[nodiscard]] double variance_m2ps4() const { return variance_; }
-  [[nodiscard]] double lost() const { return lost_; }  ///< see WheelScore
+  [[nodiscard]] double lost() const { return lost_; }  ///< see LostShare
 
  private:
   double gravity_mps2_, variance_ = 1.0, lost_ = 1.0;
