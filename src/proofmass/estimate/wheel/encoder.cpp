@@ -201,13 +201,18 @@ GravityFit compare_with_gravity(const WheelReadings& readings, EncoderTrack& out
       out.missed.insert(out.missed.end(), found.begin(), found.end());
       join_missed(offsets, out.missed);
       removes = static_cast<double>(out.missed.size()) <= range_of(motion) / rad_per_turn;
-      if (!removes) out.missed.clear();
+      if (!removes) {
+        out.missed.clear();
+        fit = *with_all;
+      }
       out.encoder.fixes = as_recorded;
       signal::remove_slips(out.missed, step_rad, out.encoder.fixes);
+      if (changed) fit.forget_residuals();
     }
     if (changed) rounds_since_change = 0;
     if (rounds_since_change >= fewest_rounds && std::abs(now.value - before.value) < 0.1 * now.std)
       break;
+    if (round == most_rounds) fit.step_back();
   }
   if (!out.missed.empty() && !(fit.variance_m2ps4() < with_all->variance_m2ps4())) {
     out.missed.clear();

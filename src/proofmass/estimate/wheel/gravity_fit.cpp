@@ -110,7 +110,7 @@ GravityFit::GravityFit(const Uncertain& delay_s,
   prior_(delay) = delay_s.value;
   if (one_speed)
     for (const int i : {2, 3, linear + 2, linear + 3, +delay, +radius}) prior_std_(i) = 1e-6;
-  at_ = prior_;
+  at_ = from_ = prior_;
 }
 
 signal::AngleFixes GravityFit::corrected(signal::AngleFixes fixes) const {
@@ -140,6 +140,12 @@ void GravityFit::step(const WheelReadings& readings, const std::vector<EncoderMo
     }
   });
   if (used == 0.0) return;
+  if (squares / used > from_variance_m2ps4_) {
+    at_ = 0.5 * (at_ + from_);
+    return;
+  }
+  from_ = at_;
+  from_variance_m2ps4_ = squares / used;
   const Row information = prior_std_.array().square().inverse();
   Block all{information.asDiagonal(), information.cwiseProduct(prior_ - at_)};
   for (const Block& block : blocks) {

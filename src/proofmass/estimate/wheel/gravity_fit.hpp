@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -53,9 +54,17 @@ class GravityFit {
   /// in step with gravity.
   [[nodiscard]] signal::AngleFixes corrected(signal::AngleFixes fixes) const;
 
-  /// `motion`: by the corrected fixes, at the measurements' times less the delay. Cost:
-  /// O(measurements), and a matrix inverse for each turn, of 200 at most.
+  /// `motion`: by the corrected fixes, at the measurements' times less the delay. Where the
+  /// residuals have become larger, goes half of the way back instead: pushes of a hand make the
+  /// delay overshoot, further with each step. Cost: O(measurements), and a matrix inverse for each
+  /// turn, of 200 at most.
   void step(const WheelReadings& readings, const std::vector<EncoderMotion>& motion);
+
+  /// Returns to the parameters with the smallest residuals.
+  void step_back() { at_ = from_; }
+
+  /// Compares no longer with the residuals so far, as other fixes follow.
+  void forget_residuals() { from_variance_m2ps4_ = std::numeric_limits<double>::infinity(); }
 
   /// Measurement less its model, and the derivatives of the model along u and v.
   [[nodiscard]] std::pair<Mat<2>, Mat<count, 2>> residual_of(const Mat<2>& reading,
@@ -82,6 +91,8 @@ class GravityFit {
  private:
   double gravity_mps2_, variance_ = 1.0, lost_ = 1.0;
   Row prior_ = Row::Zero(), prior_std_, at_, std_ = Row::Zero();
+  Row from_ = Row::Zero();  ///< last point from which a whole step was taken
+  double from_variance_m2ps4_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace proofmass::estimate
