@@ -413,7 +413,9 @@ WheelFit fit_sensors(WheelReadings& readings,
   constexpr int ripple_at = wheel::ripple(S) - wheel::first_of(0);
   if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
     readings.orders = orders_in<S>(readings, track.path);
-  constexpr double averaged_rad = 0.2;
+  // The motion of a hub that vibrates is no smooth one, which averages would show as well.
+  const bool shakes = shows_shaking(held_model<S>(readings, track.noise, track.path), readings);
+  const double averaged_rad = shakes ? 0.05 : 0.2;
   const double turn_rad = top_speed_radps(track.path) / readings.rate_hz();
   set_least_variance(turn_rad, readings);
   const std::size_t each = count_within(averaged_rad, turn_rad, readings);

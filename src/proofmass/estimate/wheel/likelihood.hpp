@@ -186,6 +186,11 @@ Traced<S> trace_path(const WheelModel<S>& model, const FilterState<wheel::states
 /// 1 + 9 + 9 + 1 times its variance. Of the quieter axis.
 [[nodiscard]] double variance_of_differences(const PlanarReadings& sensor, std::size_t each);
 
+/// Whether the hub vibrates, as a vehicle's: from the first sensor's residuals along gravity about
+/// the model's path.
+template <int S>
+[[nodiscard]] bool shows_shaking(const WheelModel<S>& model, const WheelReadings& readings);
+
 /// Sets each measurement's variance from the neighbouring innovations, not below the sensor's
 /// least_variance_m2ps4.
 template <int S>
@@ -210,7 +215,7 @@ struct TunedNoise {
 /// Maximum-likelihood motion noise on the excerpt: each parameter in turn by steps of a shrinking
 /// factor, from `first_factor` down.
 template <int S>
-[[nodiscard]] TunedNoise tune_noise(const WheelModel<S>& model,
+[[nodiscard]] TunedNoise tune_noise(WheelModel<S> model,
                                     const Excerpt<S>& excerpt,
                                     double first_factor);
 

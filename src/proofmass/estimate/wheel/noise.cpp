@@ -1,7 +1,6 @@
 #include <numeric>
 #include <span>
 
-#include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
 
@@ -154,7 +153,7 @@ std::vector<std::vector<Misfit>> misfits_of(const WheelModel<S>& model,
   return misfits;
 }
 
-bool shows_shaking(const std::vector<double>& variance_m2ps4, double rate_hz) {
+bool is_shaking(const std::vector<double>& variance_m2ps4, double rate_hz) {
   constexpr double shaking_density = 1e-4;  // (m/s²)²/Hz: no sensor's noise is above 1 mg/√Hz
   constexpr double loud_ratio = 4.0, loud_mps2 = 0.05;
   const auto loud = quantile(variance_m2ps4, 0.9), quiet = quantile(variance_m2ps4, 0.05);
@@ -181,7 +180,16 @@ bool set_least(const WheelModel<S>& model,
     const double scatter = std::sqrt(2.0 / (0.37 * static_cast<double>(misfits[i].size())));
     stretches[i].least = *variance * std::max(0.0, 1.0 - scatter);
   }
-  return shows_shaking(all, readings.rate_hz());
+  return is_shaking(all, readings.rate_hz());
+}
+
+double stretch_length_s(const WheelReadings& readings) {
+  return std::max(0.5, 40.0 / std::max(readings.rate_hz(), 1e-9));
+}
+
+std::size_t stretches_in(const WheelReadings& readings, double length_s) {
+  const double duration_s = readings.time_s.back() - readings.time_s.front();
+  return static_cast<std::size_t>(duration_s / length_s) + 1;
 }
 
 /// Search limits of the motion noise. A bias that drifted faster could replace gravity.
@@ -210,12 +218,18 @@ double variance_of_differences(const PlanarReadings& sensor, std::size_t each) {
 }
 
 template <int S>
+bool shows_shaking(const WheelModel<S>& model, const WheelReadings& readings) {
+  const double length_s = stretch_length_s(readings);
+  std::vector<NoiseStretch> stretches(stretches_in(readings, length_s));
+  return set_least(model, readings, 0, length_s, stretches);
+}
+
+template <int S>
 void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings) {
   const double start_s = readings.time_s.front();
-  const double length_s = std::max(0.5, 40.0 / std::max(readings.rate_hz(), 1e-9));
-  const auto count = static_cast<std::size_t>((readings.time_s.back() - start_s) / length_s) + 1;
+  const double length_s = stretch_length_s(readings);
   std::array<std::vector<NoiseStretch>, 2> stretches;
-  for (auto& of_sensor : stretches) of_sensor.resize(count);
+  for (auto& of_sensor : stretches) of_sensor.resize(stretches_in(readings, length_s));
   for (std::size_t s = 0; model.about != nullptr && s < readings.sensors.size(); ++s) {
     const bool shakes = set_least(model, readings, s, length_s, stretches[s]);
     if (s == 0) readings.shakes = shakes;
@@ -298,32 +312,32 @@ TunedNoise climb(const Likelihood& likelihood, const WheelNoise& start, double f
 }  // namespace
 
 template <int S>
-TunedNoise tune_noise(const WheelModel<S>& model, const Excerpt<S>& excerpt, double first_factor) {
+TunedNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt, double first_factor) {
   const auto likelihood = [&](const WheelNoise& noise) {
-    auto with = model;
-    with.noise = noise;
-    return log_likelihood_of(with, excerpt.state, excerpt.first, excerpt.last);
+    model.noise = noise;
+    return log_likelihood_of(model, excerpt.state, excerpt.first, excerpt.last);
   };
   WheelNoise start = model.noise;
   start.snap_psd = std::max(start.snap_psd, lowest.snap_psd);
+  const TunedNoise rough = climb(likelihood, start, first_factor);
   // The likelihood has two maxima, a motion driven by jerk and one by snap, with low values in
   // between.
-  std::array<WheelNoise, 2> starts{start, start};
-  const double most_psd = std::max(start.jerk_psd, start.snap_psd);
-  starts[1].jerk_psd = start.jerk_psd > start.snap_psd ? lowest.jerk_psd : most_psd;
-  starts[1].snap_psd = start.jerk_psd > start.snap_psd ? most_psd : lowest.snap_psd;
-  std::array<TunedNoise, 2> found;
-  in_parallel(2, {}, [&](std::size_t i, const Progress&) {
-    found[i] = climb(likelihood, starts[i], first_factor);
-  });
-  return found[1].log_likelihood > found[0].log_likelihood ? found[1] : found[0];
+  WheelNoise other = rough.noise;
+  const bool by_jerk = rough.noise.jerk_psd > rough.noise.snap_psd;
+  (by_jerk ? other.snap_psd : other.jerk_psd) =
+      std::max(rough.noise.jerk_psd, rough.noise.snap_psd);
+  (by_jerk ? other.jerk_psd : other.snap_psd) = by_jerk ? lowest.jerk_psd : lowest.snap_psd;
+  const TunedNoise smooth = climb(likelihood, other, first_factor);
+  return smooth.log_likelihood > rough.log_likelihood ? smooth : rough;
 }
 
+template bool shows_shaking(const WheelModel<1>&, const WheelReadings&);
+template bool shows_shaking(const WheelModel<2>&, const WheelReadings&);
 template void settle_variance(const WheelModel<1>&, const WheelPrior&, WheelReadings&);
 template void settle_variance(const WheelModel<2>&, const WheelPrior&, WheelReadings&);
 template Excerpt<1> excerpt_to_tune(const WheelModel<1>&, const WheelPrior&);
 template Excerpt<2> excerpt_to_tune(const WheelModel<2>&, const WheelPrior&);
-template TunedNoise tune_noise(const WheelModel<1>&, const Excerpt<1>&, double);
-template TunedNoise tune_noise(const WheelModel<2>&, const Excerpt<2>&, double);
+template TunedNoise tune_noise(WheelModel<1>, const Excerpt<1>&, double);
+template TunedNoise tune_noise(WheelModel<2>, const Excerpt<2>&, double);
 
 }  // namespace proofmass::estimate
