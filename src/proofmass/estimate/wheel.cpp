@@ -340,7 +340,7 @@ Result<WheelSolution> estimate_wheel(const std::vector<WheelSensor>& sensors,
     return conclude(pair->singles[0].readings, pair->singles[0].fit, options, std::move(solution));
   if (pair->clocks.offset_s.value != 0.0)
     solution.sensors[1].clock_offset_s = pair->clocks.offset_s;
-  Joint joint = fit_jointly(sensors, *pair, options);
+  Joint joint = fit_jointly(sensors, std::move(*pair), options);
   return conclude(joint.readings, std::move(joint.fit), options, std::move(solution));
 }
 

@@ -91,8 +91,8 @@ class HeldFigures {
         base_(run_at(model(), settled.prior)),
         base_levers_(pass_of(model())) {}
 
-  /// Returns false if a run's angle slips relative to the fit's, however small the step: the
-  /// differences are then meaningless, and the fit invalid.
+  /// Returns false, and adds nothing, if a run's angle slips relative to the fit's, however small
+  /// the step: the differences are then meaningless.
   [[nodiscard]] bool add_to(WheelFit& fit) const {
     std::vector<Change> changes;
     vary_places(changes);
@@ -287,25 +287,18 @@ void add_held_figures(const Settled<S>& settled,
                       const WheelReadings& readings,
                       const WheelPath& path,
                       WheelFit& fit) {
-  WheelFit with = fit;
-  bool added = HeldFigures<S>(averaged, settled, averaged_path, readings.time_s).add_to(with);
-  if (!added && averaged.epochs.size() < readings.epochs.size()) {
-    with = fit;
-    added = HeldFigures<S>(readings, settled, path, readings.time_s).add_to(with);
+  if (HeldFigures<S>(averaged, settled, averaged_path, readings.time_s).add_to(fit)) return;
+  if (averaged.epochs.size() < readings.epochs.size() &&
+      HeldFigures<S>(readings, settled, path, readings.time_s).add_to(fit))
+    return;
+  fit.constants_cov += fit.constants_prior_cov;
+  const std::vector<double>& speed_radps = fit.series.speed_radps;
+  const double late_s = readings.delay_s.std;
+  for (std::size_t k = 0; k < speed_radps.size(); ++k) {
+    add_in_square(fit.series.angle_std_rad[k], late_s * speed_radps[k]);
+    add_in_square(fit.series.filtered_angle_std_rad[k], late_s * speed_radps[k]);
   }
-  if (!added) {
-    with = std::move(fit);
-    with.constants_cov += with.constants_prior_cov;
-    const std::vector<double>& speed_radps = with.series.speed_radps;
-    const double late_s = readings.delay_s.std;
-    for (std::size_t k = 0; k < speed_radps.size(); ++k) {
-      add_in_square(with.series.angle_std_rad[k], late_s * speed_radps[k]);
-      add_in_square(with.series.filtered_angle_std_rad[k], late_s * speed_radps[k]);
-    }
-    add_in_square(with.turns.std,
-                  late_s * (speed_radps.back() - speed_radps.front()) / rad_per_turn);
-  }
-  fit = std::move(with);
+  add_in_square(fit.turns.std, late_s * (speed_radps.back() - speed_radps.front()) / rad_per_turn);
 }
 
 }  // namespace proofmass::estimate

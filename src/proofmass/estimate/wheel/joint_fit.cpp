@@ -293,7 +293,7 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
 }
 
 Joint fit_jointly(const std::vector<WheelSensor>& sensors,
-                  const Pair& pair,
+                  Pair pair,
                   const WheelOptions& options) {
   const Single &one = pair.singles[0], &two = pair.singles[1];
   Joint joint;
@@ -332,6 +332,7 @@ Joint fit_jointly(const std::vector<WheelSensor>& sensors,
       first.segment<2>(gyro), second.segment<2>(gyro),
       first.segment<wheel::encoder_states>(encoder), first.tail<2>(), second.tail<2>();
   track.beginning.angle_rad = track.path.moving.front()(wheel::angle);
+  pair.singles.clear();  // their memory
   joint.fit = fit_with_radius(joint.readings, track, FitDepth::whole, options);
   return joint;
 }

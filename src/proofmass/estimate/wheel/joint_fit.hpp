@@ -43,7 +43,7 @@ struct Joint {
 };
 
 [[nodiscard]] Joint fit_jointly(const std::vector<WheelSensor>& sensors,
-                                const Pair& pair,
+                                Pair pair,
                                 const WheelOptions& options);
 
 /// (u, v) of each sensor.
