@@ -16,7 +16,12 @@ namespace proofmass::estimate {
 /// each, then backward(k, step) in falling k. The forward pass stores the state at every `chunk`-th
 /// epoch, `shortest` or as many as make 4096 states; the backward pass reruns each chunk, so that
 /// memory is O(size / chunk + chunk) states and steps instead of one step for each epoch.
-template <class Step, std::size_t shortest, class State, class Advance, class Forward, class Backward>
+template <class Step,
+          std::size_t shortest,
+          class State,
+          class Advance,
+          class Forward,
+          class Backward>
 void there_and_back(
     std::size_t size, State state, Advance&& advance, Forward&& forward, Backward&& backward) {
   const std::size_t chunk = std::max(shortest, size / 4096);

@@ -124,32 +124,42 @@ void add_doubt(std::size_t k,
   doubt.predicted = predicted;
 }
 
-/// Whether the measurements show gravity where the filter predicts it, by windows of half a second:
-/// their component along the predicted direction is g on average, whatever the vibration, and
-/// nearly 0 if the filter has lost the phase. Then the innovations count as noise, so that neither
-/// they nor the predicted covariance show the loss. A gyroscope or an encoder counts on meanwhile.
+/// Whether the measurements show gravity where the filter predicts it, or the smoother puts it, by
+/// windows of half a second: their component along that direction is g on average, whatever the
+/// vibration, and nearly 0 if the phase is lost. Then the innovations count as noise, so that
+/// neither they nor the predicted covariance show the loss. A gyroscope or an encoder counts on
+/// meanwhile.
 template <int S>
 class GravityShown {
  public:
-  GravityShown(const WheelReadings& readings, std::vector<WheelDoubt>& doubts)
-      : readings_(readings), doubts_(doubts) {}
+  using State = typename WheelModel<S>::State;
 
-  void add(const WheelModel<S>& model, std::size_t k, const StepOf<WheelModel<S>>& step) {
+  GravityShown(const WheelModel<S>& model,
+               const WheelReadings& readings,
+               std::vector<WheelDoubt>& doubts)
+      : model_(model), readings_(readings), doubts_(doubts) {
+    // What the measurements would be at the state itself; about a path from which the state has
+    // slipped they are always as predicted.
+    model_.about = nullptr;
+  }
+
+  void add(std::size_t k, const State& at) {
     constexpr double window_s = 0.5, fewest = 20.0, shown = 0.65;
-    if (model.with_gyro || model.encoder != nullptr) return;
-    const auto& mean = step.filtered.mean;
+    if (model_.with_gyro || model_.encoder != nullptr) return;
+    model_.measure(at, k, rows_);
     std::size_t next = 0;
     for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
-      if (!model.has_readings(s, k)) continue;
-      const double phase = s > 0 ? model.phase_rad + mean(wheel::phase) : 0.0;
-      const double phi = mean(wheel::angle) + phase;
-      along_mps2_ += std::sin(phi) * step.updates[next].innovation +
-                     std::cos(phi) * step.updates[next + 1].innovation;
+      if (!model_.has_readings(s, k)) continue;
+      const double phase = s > 0 ? model_.phase_rad + at(wheel::phase) : 0.0;
+      const double phi = at(wheel::angle) + phase;
+      const auto &u = rows_.rows[next], &v = rows_.rows[next + 1];
+      along_mps2_ +=
+          std::sin(phi) * (u.value - u.predicted) + std::cos(phi) * (v.value - v.predicted);
       count_ += 1.0;
       next += 2;
     }
     if (readings_.time_s[k] - readings_.time_s[first_] < window_s || count_ < fewest) return;
-    const double share = 1.0 + along_mps2_ / count_ / model.gravity_mps2;
+    const double share = 1.0 + along_mps2_ / count_ / model_.gravity_mps2;
     if (first_ > 0 && share < shown) doubt(k);
     first_ = k + 1;
     along_mps2_ = count_ = 0.0;
@@ -165,11 +175,44 @@ class GravityShown {
       doubts_.push_back({first_, last, last, anywhere});
   }
 
+  WheelModel<S> model_;
   const WheelReadings& readings_;
   std::vector<WheelDoubt>& doubts_;
+  Readings<wheel::states(S), WheelModel<S>::channels> rows_;
   std::size_t first_ = 0;
   double along_mps2_ = 0.0, count_ = 0.0;
 };
+
+/// Adds the intervals in which the smoothed motion does not show gravity.
+template <int S>
+void doubt_smoothed(const WheelModel<S>& model,
+                    const WheelReadings& readings,
+                    Gaussian<wheel::states(S)> end,
+                    WheelFit& fit) {
+  std::vector<WheelDoubt> doubts;
+  GravityShown<S> gravity(model, readings, doubts);
+  for (std::size_t k = 0; k < model.size(); ++k) {
+    end.mean.template head<wheel::moving>() = fit.track.path.moving[k];
+    gravity.add(k, end.mean);
+  }
+  if (doubts.empty()) return;
+  doubts.insert(doubts.end(), fit.doubts.begin(), fit.doubts.end());
+  std::ranges::sort(doubts, {}, &WheelDoubt::first);
+  fit.doubts.clear();
+  for (const WheelDoubt& doubt : doubts) {
+    if (fit.doubts.empty() || doubt.first > fit.doubts.back().last + 1) {
+      fit.doubts.push_back(doubt);
+      continue;
+    }
+    WheelDoubt& joined = fit.doubts.back();
+    const std::size_t first = joined.first, last = std::max(joined.last, doubt.last);
+    if (doubt.predicted.cov(wheel::angle, wheel::angle) >
+        joined.predicted.cov(wheel::angle, wheel::angle))
+      joined = doubt;
+    joined.first = first;
+    joined.last = last;
+  }
+}
 
 /// From the state after the last epoch.
 template <int S>
@@ -204,7 +247,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
                           .gate = wheel_gate.limit});
   AngleColour<S> colour;
   LostShare lost(readings.gravity_mps2);
-  GravityShown<S> gravity(readings, fit.doubts);
+  GravityShown<S> gravity(model, readings, fit.doubts);
   const auto report = [&](std::string_view stage, std::size_t done) {
     if (progress && done % 65536 == 0)
       progress(stage, static_cast<double>(done) / static_cast<double>(size));
@@ -212,18 +255,20 @@ WheelFit smooth_at_places(const WheelReadings& readings,
   smooth(
       model, prior, wheel_gate,
       [&](std::size_t k, const auto& step) {
-        if (k > 0 && readings.time_s[k] > readings.time_s.front() + 1.0) {
+        if (k > 0) {
           const auto transition = model.transition(end.mean, k);
+          end.mean.template head<wheel::moving>() = transition.mean;
+          gravity.add(k, end.mean);
           const auto before = end.cov.template topLeftCorner<wheel::moving, wheel::moving>();
           const Gaussian<wheel::moving> predicted{
               transition.mean, transition.F * before * transition.F.transpose() + transition.Q};
-          if (predicted.cov(wheel::angle, wheel::angle) > square(lost_prediction_rad))
+          if (readings.time_s[k] > readings.time_s.front() + 1.0 &&
+              predicted.cov(wheel::angle, wheel::angle) > square(lost_prediction_rad))
             add_doubt(k, predicted, readings.time_s, fit.doubts);
         }
         end = step.filtered;
         colour.add(step);
         lost.add(step);
-        gravity.add(model, k, step);
         note_forward(model, k, step, check, fit);
         report("filter", k);
       },
@@ -232,6 +277,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
         if (k == 0) first_mean = later.mean(step.filtered);
         report("smoother", size - k);
       });
+  doubt_smoothed(model, readings, end, fit);
   filter_calibrated(model, settled.prior, {first_mean, end.cov}, fit.series);
   fit.track.lost = lost.share();
   fit.consistency = check.judge();
@@ -283,28 +329,14 @@ void add_nonlinearity(double nonlinearity, WheelFit& fit) {
   add_in_square(fit.turns.std, std::numbers::sqrt2 * nonlinearity / rad_per_turn);
 }
 
-double top_speed_radps(const WheelPath& path) {
+/// Number of measurements that may be averaged before the wheel turns by a twentieth of a radian.
+std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack& track) {
   double fastest = 0.0;
-  for (const Mat<wheel::moving>& at : path.moving)
+  for (const Mat<wheel::moving>& at : track.path.moving)
     fastest = std::max(fastest, std::abs(at(wheel::speed)));
-  return fastest;
-}
-
-/// Number of measurements during which a wheel turns by at most an angle, `turn_rad` from one to
-/// the next.
-std::size_t count_within(double angle_rad, double turn_rad, const WheelReadings& readings) {
   // A short recording keeps at least 50 averages.
   const double most = std::clamp(static_cast<double>(readings.epochs.size()) / 50.0, 1.0, 64.0);
-  return static_cast<std::size_t>(std::clamp(angle_rad / turn_rad, 1.0, most));
-}
-
-/// From averages whose third differences a turning wheel changes little.
-void set_least_variance(double turn_rad, WheelReadings& readings) {
-  constexpr double smooth_rad = 0.05, too_rough_rad = 0.1;
-  const std::size_t each = count_within(smooth_rad, turn_rad, readings);
-  for (PlanarReadings& sensor : readings.sensors)
-    sensor.least_variance_m2ps4 =
-        turn_rad < too_rough_rad ? variance_of_differences(sensor, each) : 0.0;
+  return static_cast<std::size_t>(std::clamp(0.05 * readings.rate_hz() / fastest, 1.0, most));
 }
 
 /// A track of the averaged measurements, on the time line of all of them.
@@ -413,12 +445,7 @@ WheelFit fit_sensors(WheelReadings& readings,
   constexpr int ripple_at = wheel::ripple(S) - wheel::first_of(0);
   if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
     readings.orders = orders_in<S>(readings, track.path);
-  // The motion of a hub that vibrates is no smooth one, which averages would show as well.
-  const bool shakes = shows_shaking(held_model<S>(readings, track.noise, track.path), readings);
-  const double averaged_rad = shakes ? 0.05 : 0.2;
-  const double turn_rad = top_speed_radps(track.path) / readings.rate_hz();
-  set_least_variance(turn_rad, readings);
-  const std::size_t each = count_within(averaged_rad, turn_rad, readings);
+  const std::size_t each = readings_to_average(readings, track);
   WheelReadings coarse = averaged(readings, each);
   WheelTrack coarse_track = spread_track(track, readings, coarse);
   const int rounds = S == 1 && depth == FitDepth::whole ? 4 : 2;

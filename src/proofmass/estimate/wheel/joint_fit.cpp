@@ -292,9 +292,7 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
   return pair;
 }
 
-Joint fit_jointly(const std::vector<WheelSensor>& sensors,
-                  Pair pair,
-                  const WheelOptions& options) {
+Joint fit_jointly(const std::vector<WheelSensor>& sensors, Pair pair, const WheelOptions& options) {
   const Single &one = pair.singles[0], &two = pair.singles[1];
   Joint joint;
   joint.readings = merge({&sensors[0], &sensors[1]}, {&one.prepared, &two.prepared},

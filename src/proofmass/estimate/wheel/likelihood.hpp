@@ -181,18 +181,7 @@ Traced<S> trace_path(const WheelModel<S>& model, const FilterState<wheel::states
   return traced;
 }
 
-/// Variance of white noise in a sensor's measurements, from the third differences of averages over
-/// `each` of them: a smooth motion contributes little, a third difference of white noise has
-/// 1 + 9 + 9 + 1 times its variance. Of the quieter axis.
-[[nodiscard]] double variance_of_differences(const PlanarReadings& sensor, std::size_t each);
-
-/// Whether the hub vibrates, as a vehicle's: from the first sensor's residuals along gravity about
-/// the model's path.
-template <int S>
-[[nodiscard]] bool shows_shaking(const WheelModel<S>& model, const WheelReadings& readings);
-
-/// Sets each measurement's variance from the neighbouring innovations, not below the sensor's
-/// least_variance_m2ps4.
+/// Sets each measurement's variance from the neighbouring innovations.
 template <int S>
 void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings);
 

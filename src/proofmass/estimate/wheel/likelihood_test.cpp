@@ -144,23 +144,9 @@ TEST(SettleVariance, IsNotUnderestimatedUnderLargeProcessNoise) {
   SlowWheel slow;
   const auto model = held_model<1>(slow.readings, {.jerk_psd = 1e4}, slow.path);
   const WheelPrior prior{{0.0, 0.2, SlowWheel::speed_radps, 1.0}, {}, Places::Zero(2)};
-  PlanarReadings& sensor = slow.readings.sensors[0];
-  sensor.least_variance_m2ps4 = variance_of_differences(sensor, 2);
   settle_variance(model, prior, slow.readings);
   EXPECT_NEAR(std::sqrt(slow.readings.sensors[0].variance_m2ps4[1200]), SlowWheel::noise_mps2,
               0.2 * SlowWheel::noise_mps2);
-}
-
-// On a wheel that turns by 0.04 rad from one measurement to the next and lacks one in ten.
-TEST(VarianceOfDifferences, IsThatOfTheNoiseWhateverTheNumberAveraged) {
-  SlowWheel slow;
-  PlanarReadings& sensor = slow.readings.sensors[0];
-  for (std::size_t k = 5; k < sensor.u_mps2.size(); k += 10)
-    sensor.u_mps2[k] = sensor.v_mps2[k] = std::numeric_limits<double>::quiet_NaN();
-  for (const std::size_t each : {1U, 2U})
-    EXPECT_NEAR(std::sqrt(variance_of_differences(sensor, each)), SlowWheel::noise_mps2,
-                0.15 * SlowWheel::noise_mps2)
-        << each;
 }
 
 // No motion of the wheel changes the measurements along gravity, so those show a vibrating hub

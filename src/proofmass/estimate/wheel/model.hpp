@@ -121,9 +121,6 @@ struct PlanarReadings {
   std::vector<double> speed_radps{};
   double speed_variance = 0.0;  ///< variance of each, rad²/s²
   std::size_t saturated_speeds = 0;
-  /// Lower bound of variance_m2ps4. With innovations alone, a filter that follows every measurement
-  /// would find no noise, and then overweight each of them.
-  double least_variance_m2ps4 = 0.0;
 
   [[nodiscard]] bool has(std::size_t row) const {
     return !std::isnan(u_mps2[row]) && !std::isnan(v_mps2[row]);

@@ -1,6 +1,3 @@
-#include <numeric>
-#include <span>
-
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
 
@@ -107,6 +104,28 @@ void gather(const WheelReadings& readings,
   encoder.readings += 1.0;
 }
 
+/// Variance of white noise in the measurements from their third differences, to which a slowly
+/// rotating wheel contributes little; 0 if it turns by more than a tenth of a radian. With
+/// innovations alone, a filter that follows every measurement would find no noise, and then
+/// overweight each of them. A third difference of white noise has 1 + 9 + 9 + 1 times its variance.
+double least_variance(const PlanarReadings& sensor, double rate_hz, const WheelPath& path) {
+  constexpr double smooth_rad = 0.1, gain = 20.0;
+  for (const Mat<wheel::moving>& at : path.moving)
+    if (!(std::abs(at(wheel::speed)) < smooth_rad * rate_hz)) return 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>* axis : {&sensor.u_mps2, &sensor.v_mps2}) {
+    std::vector<double> differences;
+    for (std::size_t k = 3; k < axis->size(); ++k) {
+      const double third =
+          (*axis)[k] - 3.0 * (*axis)[k - 1] + 3.0 * (*axis)[k - 2] - (*axis)[k - 3];
+      if (!std::isnan(third)) differences.push_back(third);
+    }
+    const auto std = robust_std(differences);
+    least = std::min(least, std ? square(*std) / gain : 0.0);
+  }
+  return least;
+}
+
 /// Residuals of a sensor's two axes about a path, and the direction perpendicular to gravity.
 struct Misfit {
   double u, v, across_u, across_v;
@@ -153,7 +172,7 @@ std::vector<std::vector<Misfit>> misfits_of(const WheelModel<S>& model,
   return misfits;
 }
 
-bool is_shaking(const std::vector<double>& variance_m2ps4, double rate_hz) {
+bool shows_shaking(const std::vector<double>& variance_m2ps4, double rate_hz) {
   constexpr double shaking_density = 1e-4;  // (m/s²)²/Hz: no sensor's noise is above 1 mg/√Hz
   constexpr double loud_ratio = 4.0, loud_mps2 = 0.05;
   const auto loud = quantile(variance_m2ps4, 0.9), quiet = quantile(variance_m2ps4, 0.05);
@@ -180,16 +199,7 @@ bool set_least(const WheelModel<S>& model,
     const double scatter = std::sqrt(2.0 / (0.37 * static_cast<double>(misfits[i].size())));
     stretches[i].least = *variance * std::max(0.0, 1.0 - scatter);
   }
-  return is_shaking(all, readings.rate_hz());
-}
-
-double stretch_length_s(const WheelReadings& readings) {
-  return std::max(0.5, 40.0 / std::max(readings.rate_hz(), 1e-9));
-}
-
-std::size_t stretches_in(const WheelReadings& readings, double length_s) {
-  const double duration_s = readings.time_s.back() - readings.time_s.front();
-  return static_cast<std::size_t>(duration_s / length_s) + 1;
+  return shows_shaking(all, readings.rate_hz());
 }
 
 /// Search limits of the motion noise. A bias that drifted faster could replace gravity.
@@ -197,39 +207,13 @@ constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e5, 1e8, 1e-4};
 
 }  // namespace
 
-double variance_of_differences(const PlanarReadings& sensor, std::size_t each) {
-  constexpr double gain = 1.0 + 9.0 + 9.0 + 1.0;
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::vector<double>* axis : {&sensor.u_mps2, &sensor.v_mps2}) {
-    std::vector<double> differences;
-    std::array<double, 4> means{};
-    for (std::size_t block = 0; (block + 1) * each <= axis->size(); ++block) {
-      const auto values = std::span(*axis).subspan(block * each, each);
-      // NaN where a measurement is missing: the mean of the others is of another time.
-      const double mean = std::reduce(values.begin(), values.end()) / static_cast<double>(each);
-      means = {means[1], means[2], means[3], mean};
-      const double third = means[3] - 3.0 * means[2] + 3.0 * means[1] - means[0];
-      if (block >= 3 && !std::isnan(third)) differences.push_back(third);
-    }
-    const auto std = robust_std(differences);
-    least = std::min(least, std ? square(*std) / gain : 0.0);
-  }
-  return static_cast<double>(each) * least;
-}
-
-template <int S>
-bool shows_shaking(const WheelModel<S>& model, const WheelReadings& readings) {
-  const double length_s = stretch_length_s(readings);
-  std::vector<NoiseStretch> stretches(stretches_in(readings, length_s));
-  return set_least(model, readings, 0, length_s, stretches);
-}
-
 template <int S>
 void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings) {
   const double start_s = readings.time_s.front();
-  const double length_s = stretch_length_s(readings);
+  const double length_s = std::max(0.5, 40.0 / std::max(readings.rate_hz(), 1e-9));
+  const auto count = static_cast<std::size_t>((readings.time_s.back() - start_s) / length_s) + 1;
   std::array<std::vector<NoiseStretch>, 2> stretches;
-  for (auto& of_sensor : stretches) of_sensor.resize(stretches_in(readings, length_s));
+  for (auto& of_sensor : stretches) of_sensor.resize(count);
   for (std::size_t s = 0; model.about != nullptr && s < readings.sensors.size(); ++s) {
     const bool shakes = set_least(model, readings, s, length_s, stretches[s]);
     if (s == 0) readings.shakes = shakes;
@@ -248,11 +232,14 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
     if (gyros[s].readings > 20.0) readings.sensors[s].speed_variance = gyros[s].variance();
     const VarianceProfile profile(stretches[s], length_s);
     if (profile.empty()) continue;
+    const double least = model.about == nullptr ? 0.0
+                                                : least_variance(readings.sensors[s],
+                                                                 readings.rate_hz(), *model.about);
     for (std::size_t k = 0; k < readings.epochs.size(); ++k) {
       const std::int64_t row = readings.epochs[k].row[s];
       if (row != WheelEpoch::no_row)
-        readings.sensors[s].variance_m2ps4[static_cast<std::size_t>(row)] = std::max(
-            profile.at(readings.time_s[k] - start_s), readings.sensors[s].least_variance_m2ps4);
+        readings.sensors[s].variance_m2ps4[static_cast<std::size_t>(row)] =
+            std::max(profile.at(readings.time_s[k] - start_s), least);
     }
   }
 }
@@ -331,8 +318,6 @@ TunedNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt, double fir
   return smooth.log_likelihood > rough.log_likelihood ? smooth : rough;
 }
 
-template bool shows_shaking(const WheelModel<1>&, const WheelReadings&);
-template bool shows_shaking(const WheelModel<2>&, const WheelReadings&);
 template void settle_variance(const WheelModel<1>&, const WheelPrior&, WheelReadings&);
 template void settle_variance(const WheelModel<2>&, const WheelPrior&, WheelReadings&);
 template Excerpt<1> excerpt_to_tune(const WheelModel<1>&, const WheelPrior&);

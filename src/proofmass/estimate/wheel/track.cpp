@@ -154,11 +154,8 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
                     .epochs = {},
                     .sensors = std::vector<PlanarReadings>(readings.sensors.size())};
   if (readings.encoder) out.encoder = averaged(*readings.encoder, readings.time_s, each);
-  for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
-    const PlanarReadings& sensor = readings.sensors[s];
-    out.sensors[s].speed_variance = sensor.speed_variance / static_cast<double>(each);
-    out.sensors[s].least_variance_m2ps4 = sensor.least_variance_m2ps4 / static_cast<double>(each);
-  }
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s)
+    out.sensors[s].speed_variance = readings.sensors[s].speed_variance / static_cast<double>(each);
   const std::span all(readings.epochs);
   for (std::size_t first = 0; first < all.size(); first += each) {
     const auto epochs = all.subspan(first, std::min(each, all.size() - first));
