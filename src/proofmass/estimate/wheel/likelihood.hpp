@@ -185,7 +185,7 @@ Traced<S> trace_path(const WheelModel<S>& model, const FilterState<wheel::states
 template <int S>
 void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings);
 
-/// A part of the recording to tune on: all of it or, if it is long, the interval of 8 000 epochs
+/// A part of the recording to tune on: all of it or, if it is long, the interval of 20 000 epochs
 /// with the largest speed change, with the filter's state at its beginning.
 template <int S>
 struct Excerpt {

@@ -246,7 +246,7 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
 
 template <int S>
 Excerpt<S> excerpt_to_tune(const WheelModel<S>& model, const WheelPrior& prior) {
-  constexpr std::size_t most_epochs = 8'000, parts = 4;
+  constexpr std::size_t most_epochs = 20'000, parts = 4;
   const std::size_t size = model.size();
   auto state = prior_state<S>(prior);
   Excerpt<S> best{0, std::min(size, most_epochs), state};
