@@ -258,7 +258,7 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
   std::vector<std::optional<Result<Single>>> fits(sensors.size());
   in_parallel(sensors.size(), options.progress, [&](std::size_t s, Progress progress) {
     WheelOptions of_sensor = s == 0 ? options : of_second;
-    of_sensor.progress = std::move(progress);
+    if (sensors.size() > 1) of_sensor.progress = std::move(progress);  // else with its own stages
     fits[s] = fit_single(sensors[s], depth, of_sensor);
   });
   for (auto& single : fits) {
