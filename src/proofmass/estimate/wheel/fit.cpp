@@ -227,6 +227,16 @@ void take_constants(const Gaussian<wheel::states(S)>& end,
   fit.constants_widened = fit.constants_cov - of_passes;
 }
 
+/// At epoch k, before its measurements, from the state after those of k − 1.
+template <int S>
+Gaussian<wheel::moving> predicted_motion(const WheelModel<S>& model,
+                                         std::size_t k,
+                                         const Gaussian<wheel::states(S)>& before) {
+  const auto transition = model.transition(before.mean, k);
+  const auto cov = before.cov.template topLeftCorner<wheel::moving, wheel::moving>();
+  return {transition.mean, transition.F * cov * transition.F.transpose() + transition.Q};
+}
+
 /// Results of filter and smoother with the lever arms held at their estimates.
 template <int S>
 WheelFit smooth_at_places(const WheelReadings& readings,
@@ -256,12 +266,9 @@ WheelFit smooth_at_places(const WheelReadings& readings,
       model, prior, wheel_gate,
       [&](std::size_t k, const auto& step) {
         if (k > 0) {
-          const auto transition = model.transition(end.mean, k);
-          end.mean.template head<wheel::moving>() = transition.mean;
+          const Gaussian<wheel::moving> predicted = predicted_motion(model, k, end);
+          end.mean.template head<wheel::moving>() = predicted.mean;
           gravity.add(k, end.mean);
-          const auto before = end.cov.template topLeftCorner<wheel::moving, wheel::moving>();
-          const Gaussian<wheel::moving> predicted{
-              transition.mean, transition.F * before * transition.F.transpose() + transition.Q};
           if (readings.time_s[k] > readings.time_s.front() + 1.0 &&
               predicted.cov(wheel::angle, wheel::angle) > square(lost_prediction_rad))
             add_doubt(k, predicted, readings.time_s, fit.doubts);
