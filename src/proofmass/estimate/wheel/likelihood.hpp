@@ -134,7 +134,8 @@ class LostShare {
   return 2.0 * huber * std::min(off, wheel_gate.limit) - huber * huber;
 }
 
-/// Of the innovations of epochs [first, last), with Huber's ρ; −∞ if it is not finite.
+/// Log-likelihood of epochs [first, last) from their innovations, with Huber's ρ; −∞ if it is not
+/// finite.
 template <int S>
 double log_likelihood_of(const WheelModel<S>& model,
                          FilterState<wheel::states(S)> state,
