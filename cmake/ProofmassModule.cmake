@@ -13,7 +13,8 @@ include(ProofmassTests)
 #
 # The sources of a unit are compiled together (ProofmassUnits.cmake). SOURCES are compiled one by one,
 # because they are large enough. KERNELS too, at -O3 and without fused multiply-adds: a fused one
-# rounds once instead of twice, and without it every processor gives the same digits. TEXT modules
+# rounds once instead of twice, and without it every processor gives the same digits. Without errno
+# square roots are vectorised. TEXT modules
 # generate text and pages, for which -O1 is sufficient and halves the compile time.
 function(proofmass_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "TEXT" ""
@@ -34,7 +35,7 @@ function(proofmass_module name)
   proofmass_units(${target} ${arg_UNITS})
   # With a precompiled header GCC uses the header's optimisation flags, not the source's.
   set_source_files_properties(${arg_KERNELS} PROPERTIES
-    COMPILE_OPTIONS "-ffp-contract=off;$<$<CONFIG:Release>:-O3>" SKIP_PRECOMPILE_HEADERS ON)
+    COMPILE_OPTIONS "-ffp-contract=off;-fno-math-errno;$<$<CONFIG:Release>:-O3>" SKIP_PRECOMPILE_HEADERS ON)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
   install(TARGETS ${target} EXPORT proofmass-static COMPONENT development
     FILE_SET HEADERS COMPONENT development)

@@ -1,10 +1,12 @@
 #include "proofmass/characterise/record_overview.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <iterator>
 
+#include "proofmass/characterise/allan/difference_kernels.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/number_words.hpp"
 #include "proofmass/signal/audit/chunk_statistics.hpp"
@@ -22,6 +24,10 @@ void RecordOverview::add(View<double> samples) {
   for (std::size_t from = 0; from < samples.size(); from += longest_look) {
     const View<double> part = samples.subspan(from, std::min(longest_look, samples.size() - from));
     add_sums(part);
+    if (all_finite(part.data(), part.size())) {
+      look_at_extremes(part);
+      continue;
+    }
     finite_.clear();
     std::ranges::copy_if(part, std::back_inserter(finite_),
                          [](double x) { return std::isfinite(x); });
@@ -41,7 +47,7 @@ void RecordOverview::append(const RecordOverview& part) {
   total_ += part.total_;
   squares_ += part.squares_;
   freedom_ += part.freedom_;
-  block_ = part.block_;
+  open_ = part.open_;
 }
 
 void RecordOverview::add_extremes(const RecordOverview& part) {
@@ -60,52 +66,63 @@ void RecordOverview::add_extremes(const RecordOverview& part) {
 
 void RecordOverview::exchange(StateBytes& bytes) {
   for (std::size_t* count : {&samples_, &missing_, &low_.count, &high_.count}) bytes(*count);
-  for (double* value : {&total_, &squares_, &freedom_, &block_.first, &block_.sum, &block_.squares,
-                        &block_.count, &low_.value, &high_.value})
-    bytes(*value);
+  for (double* value : {&total_, &squares_, &freedom_, &low_.value, &high_.value}) bytes(*value);
   bytes(head_);
+  bytes(open_);
   sample_.exchange(bytes, most_of_sample);
   lowest_.exchange(bytes);
   highest_.exchange(bytes);
   const std::size_t wanted = before_ == 0 ? 0 : block - before_;
-  if (head_.size() != std::min(wanted, samples_) || missing_ > samples_) bytes.fail();
+  const std::size_t open = samples_ < wanted ? 0 : (samples_ - wanted) % block;
+  if (head_.size() != std::min(wanted, samples_) || open_.size() != open || missing_ > samples_)
+    bytes.fail();
 }
 
 void RecordOverview::add_sums(View<double> samples) {
   while (!samples.empty()) {
     const std::size_t count = std::min(samples.size(), block - (before_ + samples_) % block);
-    if (before_ + samples_ < block && before_ > 0) {
-      head_.insert(head_.end(), samples.begin(),
-                   samples.begin() + static_cast<std::ptrdiff_t>(count));
-      samples_ += count;
-      samples = samples.subspan(count);
-      continue;
-    }
-    // A copy, which stays in registers.
-    Sums sums = block_;
-    for (const double sample : samples.first(count)) {
-      if (!std::isfinite(sample)) continue;
-      if (sums.count == 0.0) sums.first = sample;
-      // Relative to the block's first sample, so that an offset costs no digits.
-      const double departure = sample - sums.first;
-      sums.sum += departure;
-      sums.squares += departure * departure;
-      sums.count += 1.0;
-    }
-    block_ = sums;
+    const View<double> next = samples.first(count);
+    const bool is_head = before_ > 0 && before_ + samples_ < block;
     samples_ += count;
     samples = samples.subspan(count);
-    if ((before_ + samples_) % block == 0) close_block();
+    if (is_head) {
+      head_.insert(head_.end(), next.begin(), next.end());
+      continue;
+    }
+    if (count == block) {
+      add_block(next);
+      continue;
+    }
+    open_.insert(open_.end(), next.begin(), next.end());
+    if (open_.size() < block) continue;
+    add_block(open_);
+    open_.clear();
   }
 }
 
-void RecordOverview::close_block() {
-  if (block_.count > 0.0) {
-    total_ += block_.count * block_.first + block_.sum;
-    squares_ += block_.squares - block_.sum * block_.sum / block_.count;
-    freedom_ += block_.count - 1.0;
+void RecordOverview::add_block(View<double> samples) {
+  const Sums sums = sums_of(samples);
+  total_ += sums.total;
+  squares_ += sums.squares;
+  freedom_ += std::max(0.0, sums.count - 1.0);
+}
+
+RecordOverview::Sums RecordOverview::sums_of(View<double> samples) {
+  std::array<double, block> finite{};
+  std::size_t count = samples.size();
+  if (count > 0 && !all_finite(samples.data(), count)) {
+    const auto end = std::ranges::copy_if(samples, finite.begin(), [](double x) {
+                       return std::isfinite(x);
+                     }).out;
+    count = static_cast<std::size_t>(end - finite.begin());
+    samples = View<double>(finite.data(), count);
   }
-  block_ = {};
+  if (count == 0) return {};
+  // Relative to the first sample, so that an offset costs no digits.
+  const signal::DepartureSums departures = signal::sum_departures(samples);
+  const auto n = static_cast<double>(count);
+  return {n * samples.front() + departures.sum,
+          departures.squares - departures.sum * departures.sum / n, n};
 }
 
 void RecordOverview::look_at_extremes(View<double> finite) {
@@ -125,14 +142,13 @@ void RecordOverview::look_at_extremes(View<double> finite) {
 
 double RecordOverview::mean() const {
   const auto present = static_cast<double>(samples_ - missing_);
-  return present > 0.0 ? (total_ + block_.count * block_.first + block_.sum) / present : 0.0;
+  return present > 0.0 ? (total_ + sums_of(open_).total) / present : 0.0;
 }
 
 double RecordOverview::short_term_std() const {
-  const double last =
-      block_.count > 0.0 ? block_.squares - block_.sum * block_.sum / block_.count : 0.0;
-  const double freedom = freedom_ + std::max(0.0, block_.count - 1.0);
-  return freedom > 0.0 ? std::sqrt(std::max(0.0, squares_ + last) / freedom) : 0.0;
+  const Sums last = sums_of(open_);
+  const double freedom = freedom_ + std::max(0.0, last.count - 1.0);
+  return freedom > 0.0 ? std::sqrt(std::max(0.0, squares_ + last.squares) / freedom) : 0.0;
 }
 
 // With noise of half a step or more, quantisation is additional white noise of variance step²/12:

@@ -44,7 +44,7 @@ class RecordOverview {
   static constexpr std::size_t block = 64;
 
   struct Sums {
-    double first = 0.0, sum = 0.0, squares = 0.0, count = 0.0;
+    double total = 0.0, squares = 0.0, count = 0.0;  ///< squares: about the block's mean
   };
   struct Extreme {
     double value = 0.0;
@@ -52,7 +52,9 @@ class RecordOverview {
   };
 
   void add_sums(View<double> samples);
-  void close_block();
+  void add_block(View<double> samples);
+  /// Of the finite samples of a block, or of a part of one.
+  [[nodiscard]] static Sums sums_of(View<double> samples);
   void add_extremes(const RecordOverview& part);
   void look_at_extremes(View<double> finite);
 
@@ -60,7 +62,7 @@ class RecordOverview {
   std::size_t samples_ = 0, missing_ = 0;
   double total_ = 0.0, squares_ = 0.0, freedom_ = 0.0;
   std::vector<double> head_;  ///< of the first block, if it begins before this part
-  Sums block_;                ///< current block
+  std::vector<double> open_;  ///< of the last block, if it is not complete
   Extreme low_{.value = std::numeric_limits<double>::infinity()};
   Extreme high_{.value = -std::numeric_limits<double>::infinity()};
   signal::Subsample sample_;

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "proofmass/characterise/noise/series_kernels.hpp"
 #include "proofmass/characterise/noise_model.hpp"
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/contract.hpp"
@@ -209,14 +210,9 @@ void EqualSpans::add(View<double> values) {
       counts_.push_back(0.0);
     }
     const std::size_t count = std::min(length_ - taken_, values.size());
-    double sum = sums_.back(), present = counts_.back();
-    for (const double value : values.first(count)) {
-      if (std::isnan(value)) continue;
-      sum += value;
-      present += 1.0;
-    }
-    sums_.back() = sum;
-    counts_.back() = present;
+    const PresentSum present = sum_present(values.data(), count);
+    sums_.back() += present.sum;
+    counts_.back() += static_cast<double>(present.count);
     taken_ += count;
     if (taken_ == length_) taken_ = 0;
     values = values.subspan(count);
@@ -259,32 +255,28 @@ void StationarityTest::Octave::add(View<double> values,
   }
   if (values.empty()) return;
   std::vector<double>& differences = buffer;
-  differences.clear();
-  const auto take = [&](double first, double second) {
-    differences.push_back(second - first);
-    means.push_back(0.5 * (second + first));
-  };
+  const std::size_t waiting = first_of_pair ? 1 : 0;
+  const std::size_t pairs = (waiting + values.size()) / 2;
+  differences.resize(pairs);
+  means.resize(pairs);
   if (first_of_pair) {
-    take(*first_of_pair, values.front());
+    const std::array<double, 2> pair{*first_of_pair, values.front()};
+    split_pairs(pair.data(), 1, differences.data(), means.data());
     first_of_pair.reset();
     values = values.subspan(1);
   }
-  for (std::size_t k = 0; k + 1 < values.size(); k += 2) take(values[k], values[k + 1]);
+  split_pairs(values.data(), pairs - waiting, differences.data() + waiting, means.data() + waiting);
   if (values.size() % 2 == 1) first_of_pair = values.back();
-  coefficients += differences.size();
+  coefficients += pairs;
   if (beginning.size() < room) {
-    const std::size_t wanted = std::min(differences.size(), room - beginning.size());
+    const std::size_t wanted = std::min(pairs, room - beginning.size());
     beginning.insert(beginning.end(), differences.begin(),
                      differences.begin() + static_cast<std::ptrdiff_t>(wanted));
   }
-  for (double& difference : differences) {
-    const double squared = square(difference);
-    if (std::isfinite(squared)) {
-      squares += squared;
-      ++finite;
-    }
-    difference = std::sqrt(std::abs(difference));
-  }
+  const PresentSum sum = sum_finite_squares(differences.data(), pairs);
+  squares += sum.sum;
+  finite += sum.count;
+  take_roots(differences.data(), pairs);
   roots.add(View<double>(differences));
 }
 

@@ -13,7 +13,7 @@
 namespace proofmass::fleet {
 namespace {
 
-constexpr std::string_view sums_magic = "proofmass-noise-sums 3 ";
+constexpr std::string_view sums_magic = "proofmass-noise-sums 4 ";
 // Read as another number on a machine with another byte order.
 constexpr std::uint64_t byte_order = 0x0102030405060708;
 constexpr std::string_view base64_digits =
@@ -148,7 +148,7 @@ Error corrupt_sums(const char* what) {
   return {Errc::corrupt, fmt::format("sums of noise: {}: delete it and run the fleet again", what)};
 }
 
-// "proofmass-noise-sums 3 KEY SHA256 PLACE CHARACTERS CHECKSUM\n"
+// "proofmass-noise-sums 4 KEY SHA256 PLACE CHARACTERS CHECKSUM\n"
 struct HeadLine {
   SumsHead head;
   std::size_t length = 0;      // with the end of the line

@@ -1,6 +1,7 @@
 #include "proofmass/signal/clipping_tail.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "proofmass/signal/audit/chunk_statistics.hpp"
@@ -20,8 +21,15 @@ void ClippingTail::add(View<double> values, double extreme) {
   constexpr std::size_t part = 64;
   for (std::size_t from = 0; from < values.size() && sign_ * extreme < below_; from += part) {
     const View<double> some = values.subspan(from, std::min(part, values.size() - from));
-    if (count_below(some, sign_, below_) > 0)
-      std::ranges::for_each(some, [this](double value) { keep(sign_ * value); });
+    if (count_below(some, sign_, below_) == 0) continue;
+    // Branch-free, as the few in the tail are unpredictable.
+    std::array<double, part> tail{};
+    std::size_t count = 0;
+    for (const double value : some) {
+      tail[count] = sign_ * value;
+      count += tail[count] < below_ ? 1 : 0;
+    }
+    for (std::size_t k = 0; k < count; ++k) keep(tail[k]);
   }
 }
 

@@ -19,6 +19,17 @@ double total(const Lanes& sums) {
 }  // namespace
 
 PM_VECTOR_CLONES
+bool all_finite(const double* values, std::size_t n) {
+  // One infinity or NaN makes the sum of x·0 a NaN.
+  Lanes sums{};
+  std::size_t k = 0;
+  for (; k + lanes <= n; k += lanes)
+    for (std::size_t lane = 0; lane < lanes; ++lane) sums[lane] += values[k + lane] * 0.0;
+  for (; k < n; ++k) sums[0] += values[k] * 0.0;
+  return total(sums) == 0.0;
+}
+
+PM_VECTOR_CLONES
 double squared_second_differences(const double* x, std::size_t m, std::size_t n) {
   Lanes sums{};
   const double* middle = x + m;

@@ -19,6 +19,8 @@ namespace proofmass::characterise {
   return statistic == Statistic::adev || statistic == Statistic::oadev ? 2 : 3;
 }
 
+[[nodiscard]] bool all_finite(const double* values, std::size_t n);
+
 /// Σ (x[i+2m] − 2 x[i+m] + x[i])² over i = 0 … n − 1.
 [[nodiscard]] double squared_second_differences(const double* x, std::size_t m, std::size_t n);
 

@@ -1,9 +1,8 @@
 #include "proofmass/characterise/allan/difference_variance.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
+#include <span>
 #include <utility>
 
 #include "proofmass/characterise/allan/difference_kernels.hpp"
@@ -38,16 +37,6 @@ std::size_t level_of(std::size_t m, std::size_t least_overlap) {
     ++level;
   }
   return level;
-}
-
-bool all_finite(View<double> samples) {
-  // One infinity or NaN makes the sum of x·0 a NaN; the loop is branch-free with parallel sums.
-  std::array<double, 8> sums{};
-  std::size_t k = 0;
-  for (; k + sums.size() <= samples.size(); k += sums.size())
-    for (std::size_t lane = 0; lane < sums.size(); ++lane) sums[lane] += samples[k + lane] * 0.0;
-  for (; k < samples.size(); ++k) sums[0] += samples[k] * 0.0;
-  return std::accumulate(sums.begin(), sums.end(), 0.0) == 0.0;
 }
 
 double mean_of_finite(View<double> samples) {
@@ -99,7 +88,7 @@ void DifferenceVariances::add(View<double> samples) {
     const View<double> part = samples.subspan(from, std::min(chunk, samples.size() - from));
     samples_ += part.size();
     if (!started_) offset_ = mean_of_finite(part);
-    if (gap_ == 0 && all_finite(part)) {
+    if (gap_ == 0 && all_finite(part.data(), part.size())) {
       if (!started_) {
         begin();
         first_valid_ = part.front();
@@ -132,15 +121,15 @@ void DifferenceVariances::begin() {
 void DifferenceVariances::add_complete(View<double> samples) {
   Level& level = levels_.front();
   const std::size_t before = level.points.size();
-  level.points.resize(before + samples.size());
-  double* point = level.points.data() + before;
-  // Copies, which stay in registers, as members might alias the target of `point`.
+  level.points.insert(level.points.end(), samples.begin(), samples.end());
+  const std::span<double> points(level.points.data() + before, samples.size());
+  // Copies, which stay in registers, as members might alias the points.
   double theta = theta_, big_theta = big_theta_;
   const double offset = offset_;
   if (is_modified(statistic_)) {
-    for (const double y : samples) *point++ = big_theta += theta += y - offset;
+    for (double& point : points) point = big_theta += theta += point - offset;
   } else {
-    for (const double y : samples) *point++ = theta += y - offset;
+    for (double& point : points) point = theta += point - offset;
   }
   theta_ = theta;
   big_theta_ = big_theta;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -19,6 +20,14 @@ using Lanes = std::array<double, lanes>;
 
 double total(const Lanes& sums) {
   return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+// For short blocks.
+constexpr std::size_t quad = 4;
+using Quad [[gnu::vector_size(quad * sizeof(double))]] = double;
+
+[[gnu::always_inline]] inline double total(const Quad& x) {
+  return (x[0] + x[2]) + (x[1] + x[3]);
 }
 
 // 0 if is_plausible, else positive. Branch-free; every comparison with NaN is false.
@@ -72,6 +81,31 @@ double squares_about(View<double> values, double mean) {
   }
   for (; k < values.size(); ++k) sums[0] += (x[k] - mean) * (x[k] - mean);
   return total(sums);
+}
+
+PM_VECTOR_CLONES
+DepartureSums sum_departures(View<double> values) {
+  const double* x = values.data();
+  const double first = x[0];
+  Quad sum{}, squares{}, steps{};
+  std::size_t k = 1;
+  for (; k + quad <= values.size(); k += quad) {
+    Quad here, before;
+    std::memcpy(&here, x + k, sizeof(Quad));
+    std::memcpy(&before, x + k - 1, sizeof(Quad));
+    const Quad z = here - first, step = here - before;
+    sum += z;
+    squares += z * z;
+    steps += step * step;
+  }
+  DepartureSums out{total(sum), total(squares), total(steps)};
+  for (; k < values.size(); ++k) {
+    const double z = x[k] - first, step = x[k] - x[k - 1];
+    out.sum += z;
+    out.squares += z * z;
+    out.steps += step * step;
+  }
+  return out;
 }
 
 PM_VECTOR_CLONES

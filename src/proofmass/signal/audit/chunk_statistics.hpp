@@ -36,6 +36,14 @@ void for_each_implausible(View<double> values, Odd odd) {
 /// Σ (x − mean)²
 [[nodiscard]] double squares_about(View<double> values, double mean);
 
+/// Σ z, Σ z² and Σ (z[k] − z[k−1])² of the departures z from the first value.
+struct DepartureSums {
+  double sum = 0.0, squares = 0.0, steps = 0.0;
+};
+
+/// Precondition: non-empty.
+[[nodiscard]] DepartureSums sum_departures(View<double> values);
+
 /// True if any value equals the previous one.
 [[nodiscard]] bool has_repeats(View<double> values);
 

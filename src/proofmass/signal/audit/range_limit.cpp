@@ -9,8 +9,14 @@
 namespace proofmass::signal {
 
 std::optional<RangeLimit> find_upper_limit(View<double> series) {
-  const Moments all = moments(series);
-  const Extent extent{all.min, median_or_zero(series), all.max};
+  Extent extent{.median = median_or_zero(series)};
+  bool any = false;
+  for (const double x : series) {
+    if (!std::isfinite(x)) continue;
+    extent.low = any ? std::min(extent.low, x) : x;
+    extent.high = any ? std::max(extent.high, x) : x;
+    any = true;
+  }
   if (const auto hard = find_hard_limit(series, extent)) return hard;
   if (const auto crowded = find_crowded_limit(series, extent)) return crowded;
   return find_soft_limit(series, extent);

@@ -13,6 +13,11 @@ namespace {
 
 using Axes = View<View<double>>;
 
+bool is_complete(const RestBlocks& blocks, std::size_t first, std::size_t end) {
+  return std::all_of(blocks.there.data() + first, blocks.there.data() + end,
+                     [](unsigned char there) { return there != 0; });
+}
+
 /// The samples of block k except `left_out`.
 RestBlock block_of(Axes axes, const RestBlocks& blocks, std::size_t k, std::size_t left_out) {
   RestBlock block;
@@ -21,6 +26,16 @@ RestBlock block_of(Axes axes, const RestBlocks& blocks, std::size_t k, std::size
   std::size_t first = blocks.first_sample(k);
   while (first < end && !is_used(first)) ++first;
   if (first == end) return block;
+  if (end <= left_out && is_complete(blocks, first, end)) {
+    block.count = static_cast<double>(end - first);
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      const DepartureSums sums = sum_departures(axes[a].subspan(first, end - first));
+      block.mean[a] = axes[a][first] + sums.sum / block.count;
+      block.squares[a] = std::max(0.0, sums.squares - sums.sum * sums.sum / block.count);
+      block.steps[a] = sums.steps;
+    }
+    return block;
+  }
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const View<double> axis = axes[a];
     const double anchor = axis[first];  // preserves digits where the level is far from zero
