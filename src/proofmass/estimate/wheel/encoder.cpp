@@ -94,11 +94,9 @@ EncoderOffsets offsets_of(const WheelReadings& readings,
       close();
       bin = own;
     }
-    const auto [off, rows] = fit.residual_of(reading, motion[k]);
-    // A rotation by 1 rad, as −1 times the delay's column per speed.
-    const Mat<2> along = -rows.row(GravityFit::delay).transpose() / motion[k](3);
+    const auto [off, by_rotation, by_parameters] = fit.residual_of(reading, motion[k]);
     time_s += readings.time_s[k];
-    offset -= off.dot(along) / along.squaredNorm();
+    offset -= off.dot(by_rotation) / by_rotation.squaredNorm();
     change += motion[k](2) * rad_per_turn / square(motion[k](1));
     count += 1.0;
   });
@@ -172,6 +170,7 @@ void join_missed(const EncoderOffsets& offsets, std::vector<signal::CountSlip>& 
 /// removed.
 GravityFit compare_with_gravity(const WheelReadings& readings, EncoderTrack& out) {
   constexpr int fewest_rounds = 3, most_rounds = 16;
+  constexpr double small_move = 0.1;
   GravityFit fit(readings.delay_s, out.encoder.errors_rad.value_or(uncalibrated_errors_rad),
                  readings.one_speed, readings.gravity_mps2);
   const signal::AngleFixes as_recorded = out.encoder.fixes;
@@ -181,12 +180,11 @@ GravityFit compare_with_gravity(const WheelReadings& readings, EncoderTrack& out
   bool removes = step_rad > 0.0, settled = false;
   int rounds_since_change = 0;
   for (int round = 1; round <= most_rounds; ++round) {
-    const Uncertain before = fit.figure(GravityFit::delay);
-    const auto motion = motion_of(fit.corrected(out.encoder.fixes), readings.time_s, before.value);
+    const auto motion = motion_of(fit.corrected(out.encoder.fixes), readings.time_s,
+                                  fit.figure(GravityFit::delay).value);
     fit.step(readings, motion);
-    const Uncertain now = fit.figure(GravityFit::delay);
-    settled =
-        round >= fewest_rounds && (settled || std::abs(now.value - before.value) < 0.1 * now.std);
+    const bool has_converged = fit.last_move() < small_move;
+    settled = settled || (round >= fewest_rounds && has_converged);
     if (!settled) continue;
     bool changed = false;
     ++rounds_since_change;
@@ -207,12 +205,9 @@ GravityFit compare_with_gravity(const WheelReadings& readings, EncoderTrack& out
       }
       out.encoder.fixes = as_recorded;
       signal::remove_slips(out.missed, step_rad, out.encoder.fixes);
-      if (changed) fit.forget_residuals();
     }
     if (changed) rounds_since_change = 0;
-    if (rounds_since_change >= fewest_rounds && std::abs(now.value - before.value) < 0.1 * now.std)
-      break;
-    if (round == most_rounds) fit.step_back();
+    if (rounds_since_change >= fewest_rounds && has_converged) break;
   }
   if (!out.missed.empty() && !(fit.variance_m2ps4() < with_all->variance_m2ps4())) {
     out.missed.clear();

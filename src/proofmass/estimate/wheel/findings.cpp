@@ -161,7 +161,11 @@ void describe_encoder(const WheelFit& fit,
   double variance = 0.0, count = 0.0;
   for (const double one : readings.variance_rad2)
     if (std::isfinite(one)) variance += one, count += 1.0;
-  encoder.noise_rad = std::sqrt(variance / std::max(count, 1.0) + readings.more_variance_rad2);
+  double speed2 = 0.0;
+  for (const Mat<wheel::moving>& at : fit.track.path.moving) speed2 += square(at(wheel::speed));
+  const double rms_radps = std::sqrt(speed2 / static_cast<double>(fit.track.path.moving.size()));
+  encoder.noise_rad =
+      std::sqrt(variance / std::max(count, 1.0) + readings.more.variance_rad2(rms_radps));
   encoder.offset_rad = determined(fit, first, readings.zero_rad);
   if (encoder.offset_rad)
     encoder.offset_rad->value = std::remainder(encoder.offset_rad->value, rad_per_turn);

@@ -7,6 +7,7 @@
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/colour.hpp"
+#include "proofmass/estimate/wheel/doubts.hpp"
 #include "proofmass/estimate/wheel/held_figures.hpp"
 #include "proofmass/estimate/wheel/rivals.hpp"
 #include "proofmass/estimate/wheel/settle.hpp"
@@ -104,114 +105,6 @@ void filter_calibrated(const WheelModel<S>& model,
     series.filtered_angle_std_rad[k] =
         std::sqrt(std::max(now.by_angle.dot(step.filtered.cov * now.by_angle), 0.0));
   });
-}
-
-/// Ambiguous intervals less than half a second apart are merged.
-void add_doubt(std::size_t k,
-               const Gaussian<wheel::moving>& predicted,
-               const std::vector<double>& time_s,
-               std::vector<WheelDoubt>& doubts) {
-  constexpr double apart_s = 0.5;
-  const auto variance = [](const Gaussian<wheel::moving>& state) {
-    return state.cov(wheel::angle, wheel::angle);
-  };
-  if (doubts.empty() || time_s[k] - time_s[doubts.back().last] > apart_s)
-    doubts.push_back({.first = k});
-  WheelDoubt& doubt = doubts.back();
-  doubt.last = k;
-  if (variance(predicted) <= variance(doubt.predicted)) return;
-  doubt.widest = k;
-  doubt.predicted = predicted;
-}
-
-/// Whether the measurements show gravity where the filter predicts it, or the smoother puts it, by
-/// windows of half a second: their component along that direction is g on average, whatever the
-/// vibration, and nearly 0 if the phase is lost. Then the innovations count as noise, so that
-/// neither they nor the predicted covariance show the loss. A gyroscope or an encoder counts on
-/// meanwhile.
-template <int S>
-class GravityShown {
- public:
-  using State = typename WheelModel<S>::State;
-
-  GravityShown(const WheelModel<S>& model,
-               const WheelReadings& readings,
-               std::vector<WheelDoubt>& doubts)
-      : model_(model), readings_(readings), doubts_(doubts) {
-    // What the measurements would be at the state itself; about a path from which the state has
-    // slipped they are always as predicted.
-    model_.about = nullptr;
-  }
-
-  void add(std::size_t k, const State& at) {
-    constexpr double window_s = 0.5, fewest = 20.0, shown = 0.65;
-    if (model_.with_gyro || model_.encoder != nullptr) return;
-    model_.measure(at, k, rows_);
-    std::size_t next = 0;
-    for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
-      if (!model_.has_readings(s, k)) continue;
-      const double phase = s > 0 ? model_.phase_rad + at(wheel::phase) : 0.0;
-      const double phi = at(wheel::angle) + phase;
-      const auto &u = rows_.rows[next], &v = rows_.rows[next + 1];
-      along_mps2_ +=
-          std::sin(phi) * (u.value - u.predicted) + std::cos(phi) * (v.value - v.predicted);
-      count_ += 1.0;
-      next += 2;
-    }
-    if (readings_.time_s[k] - readings_.time_s[first_] < window_s || count_ < fewest) return;
-    const double share = 1.0 + along_mps2_ / count_ / model_.gravity_mps2;
-    if (first_ > 0 && share < shown) doubt(k);
-    first_ = k + 1;
-    along_mps2_ = count_ = 0.0;
-  }
-
- private:
-  void doubt(std::size_t last) {
-    Gaussian<wheel::moving> anywhere{};
-    anywhere.cov(wheel::angle, wheel::angle) = std::numeric_limits<double>::infinity();
-    if (!doubts_.empty() && doubts_.back().last + 1 >= first_)
-      doubts_.back() = {doubts_.back().first, last, last, anywhere};
-    else
-      doubts_.push_back({first_, last, last, anywhere});
-  }
-
-  WheelModel<S> model_;
-  const WheelReadings& readings_;
-  std::vector<WheelDoubt>& doubts_;
-  Readings<wheel::states(S), WheelModel<S>::channels> rows_;
-  std::size_t first_ = 0;
-  double along_mps2_ = 0.0, count_ = 0.0;
-};
-
-/// Adds the intervals in which the smoothed motion does not show gravity.
-template <int S>
-void doubt_smoothed(const WheelModel<S>& model,
-                    const WheelReadings& readings,
-                    Gaussian<wheel::states(S)> end,
-                    WheelFit& fit) {
-  std::vector<WheelDoubt> doubts;
-  GravityShown<S> gravity(model, readings, doubts);
-  for (std::size_t k = 0; k < model.size(); ++k) {
-    end.mean.template head<wheel::moving>() = fit.track.path.moving[k];
-    gravity.add(k, end.mean);
-  }
-  if (doubts.empty()) return;
-  doubts.insert(doubts.end(), fit.doubts.begin(), fit.doubts.end());
-  std::ranges::sort(doubts, {}, &WheelDoubt::first);
-  fit.doubts.clear();
-  for (const WheelDoubt& doubt : doubts) {
-    if (fit.doubts.empty() || doubt.first > fit.doubts.back().last + 1) {
-      fit.doubts.push_back(doubt);
-      continue;
-    }
-    WheelDoubt& joined = fit.doubts.back();
-    const std::size_t first = joined.first, last = std::max(joined.last, doubt.last);
-    if (doubt.predicted.cov(wheel::angle, wheel::angle) >
-        joined.predicted.cov(wheel::angle, wheel::angle))
-      joined = doubt;
-    joined.first = first;
-    joined.last = last;
-  }
 }
 
 /// From the state after the last epoch.
@@ -465,7 +358,7 @@ WheelFit fit_sensors(WheelReadings& readings,
   spread_variance(coarse, each, readings);
   readings.rolling_radius_m = coarse.rolling_radius_m;
   readings.shakes = coarse.shakes;
-  if (readings.encoder) readings.encoder->more_variance_rad2 = coarse.encoder->more_variance_rad2;
+  if (readings.encoder) readings.encoder->more = coarse.encoder->more;
   if (depth == FitDepth::track)
     return smooth_at_places(coarse, settled, coarse_track.path, progress);
   track = spread_track(coarse_track, coarse, readings);

@@ -12,23 +12,36 @@ namespace {
 
 constexpr double no_angle = std::numeric_limits<double>::quiet_NaN();
 
-/// Sets acceleration and calm speed from those of the parabolas.
-void calm(const std::vector<double>& time_s, std::vector<EncoderMotion>& motion) {
+/// Half of the time over which calm() takes changes, s.
+double reach_s_at(double speed_radps) {
   constexpr double half_rad = rad_per_turn / 8.0, half_s = 0.5;
+  return std::min(half_rad / std::abs(speed_radps), half_s);
+}
+
+/// Sets acceleration, calm speed and jerk from those of the parabolas.
+void calm(const std::vector<double>& time_s, std::vector<EncoderMotion>& motion) {
   const std::vector<EncoderMotion> sharp = motion;
-  std::size_t from = 0, to = 0;
-  for (std::size_t k = 0; k < motion.size(); ++k) {
-    const double reach_s = std::min(half_rad / std::abs(sharp[k](1)), half_s);
-    while (time_s[from] < time_s[k] - reach_s) ++from;
-    while (from > 0 && time_s[from - 1] >= time_s[k] - reach_s) --from;
-    to = std::max(to, k);
-    while (to + 1 < sharp.size() && time_s[to + 1] <= time_s[k] + reach_s) ++to;
-    while (to > k && time_s[to] > time_s[k] + reach_s) --to;
-    if (to == from) continue;
+  // f(k, first and last epoch within its reach)
+  const auto for_each_reach = [&](const auto& f) {
+    std::size_t from = 0, to = 0;
+    for (std::size_t k = 0; k < motion.size(); ++k) {
+      const double reach_s = reach_s_at(sharp[k](1));
+      while (time_s[from] < time_s[k] - reach_s) ++from;
+      while (from > 0 && time_s[from - 1] >= time_s[k] - reach_s) --from;
+      to = std::max(to, k);
+      while (to + 1 < sharp.size() && time_s[to + 1] <= time_s[k] + reach_s) ++to;
+      while (to > k && time_s[to] > time_s[k] + reach_s) --to;
+      if (to > from) f(k, from, to);
+    }
+  };
+  for_each_reach([&](std::size_t k, std::size_t from, std::size_t to) {
     const double span_s = time_s[to] - time_s[from];
     motion[k](2) = (sharp[to](1) - sharp[from](1)) / span_s;
     motion[k](3) = (sharp[to](0) - sharp[from](0)) / span_s;
-  }
+  });
+  for_each_reach([&](std::size_t k, std::size_t from, std::size_t to) {
+    motion[k](4) = (motion[to](2) - motion[from](2)) / (time_s[to] - time_s[from]);
+  });
 }
 
 /// ∂ψ'/∂p of the errors.
@@ -63,11 +76,12 @@ std::vector<EncoderMotion> motion_of(const signal::AngleFixes& fixes,
   for (std::size_t k = 0; k < time_s.size(); ++k) {
     const double angle = motion.angle_rad[k];
     if (!known(angle)) {
-      out.emplace_back(latest, 0.0, 0.0, 0.0);
+      out.push_back((EncoderMotion() << latest, 0.0, 0.0, 0.0, 0.0).finished());
       continue;
     }
     latest = angle;
-    out.emplace_back(angle, motion.speed_radps[k], motion.accel_radps2[k], motion.speed_radps[k]);
+    const double speed = motion.speed_radps[k];
+    out.push_back((EncoderMotion() << angle, speed, motion.accel_radps2[k], speed, 0.0).finished());
   }
   calm(time_s, out);
   return out;
@@ -110,7 +124,7 @@ GravityFit::GravityFit(const Uncertain& delay_s,
   prior_(delay) = delay_s.value;
   if (one_speed)
     for (const int i : {2, 3, linear + 2, linear + 3, +delay, +radius}) prior_std_(i) = 1e-6;
-  at_ = from_ = prior_;
+  at_ = prior_;
 }
 
 signal::AngleFixes GravityFit::corrected(signal::AngleFixes fixes) const {
@@ -129,7 +143,7 @@ void GravityFit::step(const WheelReadings& readings, const std::vector<EncoderMo
       turn = now;
     }
     auto& [normal, score] = blocks.back();
-    const auto [off, rows] = residual_of(reading, motion[k]);
+    const auto [off, by_rotation, rows] = residual_of(reading, motion[k]);
     for (int axis = 0; axis < 2; ++axis) {
       const Row x = rows.col(axis);
       normal += x * x.transpose() / variance_;
@@ -140,12 +154,6 @@ void GravityFit::step(const WheelReadings& readings, const std::vector<EncoderMo
     }
   });
   if (used == 0.0) return;
-  if (squares / used > from_variance_m2ps4_) {
-    at_ = 0.5 * (at_ + from_);
-    return;
-  }
-  from_ = at_;
-  from_variance_m2ps4_ = squares / used;
   const Row information = prior_std_.array().square().inverse();
   Block all{information.asDiagonal(), information.cwiseProduct(prior_ - at_)};
   for (const Block& block : blocks) {
@@ -160,38 +168,46 @@ void GravityFit::step(const WheelReadings& readings, const std::vector<EncoderMo
     variance += (positive_inverse(all.normal - block.normal) * (all.score - block.score) - move)
                     .cwiseAbs2();
   std_ = variance.cwiseSqrt();
+  const Row before = at_;
   at_ += move;
   at_(delay) = std::max(at_(delay), 0.0);
+  last_move_ = (at_ - before).cwiseQuotient(std_).cwiseAbs().maxCoeff();
   variance_ = std::max(squares / used, 1e-8);
   lost_ = lost / used;
 }
 
-std::pair<Mat<2>, Mat<GravityFit::count, 2>> GravityFit::residual_of(
-    const Mat<2>& reading, const EncoderMotion& motion) const {
-  const double psi = motion(0), w = motion(1), al = motion(2);
-  Row x = by_angle(psi);  // ∂ψ'/∂p of the common parameters
-  x(delay) = -motion(3);
-  x(radius) = -al / gravity_mps2_;
-  const double at = psi + x(radius) * at_(radius);
-  Mat<linear> own;
-  own << std::sin(at), std::cos(at), w * w, al, 1.0;
+GravityFit::Residual GravityFit::residual_of(const Mat<2>& reading,
+                                             const EncoderMotion& motion) const {
+  const double psi = motion(0), w = motion(1), al = motion(2), jerk = motion(4);
   Row by_square = Row::Zero(), by_accel = Row::Zero();  // ∂ω²/∂p and ∂α/∂p
+  by_square(delay) = -2.0 * motion(3) * al;
+  by_accel(delay) = -jerk;
+  const double reach_rad = std::abs(w) * reach_s_at(w);
   for (int n = 1; n <= orders; ++n) {
     const double cos_n = n * std::cos(n * psi), sin_n = n * std::sin(n * psi);
     by_square.segment<2>(errors + 2 * n - 2) << 2.0 * w * w * sin_n, -2.0 * w * w * cos_n;
-    by_accel.segment<2>(errors + 2 * n - 2) << al * sin_n + n * w * w * cos_n,
-        -al * cos_n + n * w * w * sin_n;
+    // The change of speed over the reach is smaller than the acceleration.
+    const double share = reach_rad > 0.0 ? std::sin(n * reach_rad) / (n * reach_rad) : 1.0;
+    by_accel.segment<2>(errors + 2 * n - 2) << share * (al * sin_n + n * w * w * cos_n),
+        share * (-al * cos_n + n * w * w * sin_n);
   }
-  Mat<2> off = reading;
-  Mat<count, 2> rows;
+  const double hub_s2 = at_(radius) / gravity_mps2_;
+  Row x = by_angle(psi) - hub_s2 * by_accel;  // ∂ψ'/∂p of the common parameters
+  x(delay) -= motion(3);
+  x(radius) = -al / gravity_mps2_;
+  const double at = psi - hub_s2 * al;
+  Mat<linear> own;
+  own << std::sin(at), std::cos(at), w * w, al, 1.0;
+  Residual out;
   for (int axis = 0; axis < 2; ++axis) {
     const auto response = at_.segment<linear>(linear * axis);
-    off(axis) -= response.dot(own);
-    rows.col(axis) = (response(0) * own(1) - response(1) * own(0)) * x + response(2) * by_square +
-                     response(3) * by_accel;
-    rows.col(axis).segment<linear>(linear * axis) = own;
+    out.off(axis) = reading(axis) - response.dot(own);
+    out.by_rotation(axis) = response(0) * own(1) - response(1) * own(0);
+    out.by_parameters.col(axis) =
+        out.by_rotation(axis) * x + response(2) * by_square + response(3) * by_accel;
+    out.by_parameters.col(axis).segment<linear>(linear * axis) = own;
   }
-  return {off, rows};
+  return out;
 }
 
 }  // namespace proofmass::estimate

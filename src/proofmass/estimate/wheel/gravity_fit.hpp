@@ -10,10 +10,11 @@
 // any filter.
 namespace proofmass::estimate {
 
-/// Angle, speed, acceleration, and the speed without noise. The last and the acceleration are
-/// changes of angle and speed over a quarter of a turn, at most a second: as regressors, noise in
-/// them would bias their coefficients, and at one speed show a delay that cannot be known there.
-using EncoderMotion = Mat<4>;
+/// Angle, speed, acceleration, the speed without noise, and jerk. The last two and the acceleration
+/// are changes of angle, speed and acceleration over a quarter of a turn, at most a second: as
+/// regressors, noise in them would bias their coefficients, and at one speed show a delay that
+/// cannot be known there.
+using EncoderMotion = Mat<5>;
 
 /// The encoder's motion, an age before the epochs; outside its fixes, at rest.
 [[nodiscard]] std::vector<EncoderMotion> motion_of(const signal::AngleFixes& fixes,
@@ -54,21 +55,19 @@ class GravityFit {
   /// in step with gravity.
   [[nodiscard]] signal::AngleFixes corrected(signal::AngleFixes fixes) const;
 
-  /// `motion`: by the corrected fixes, at the measurements' times less the delay. Where the
-  /// residuals have become larger, goes half of the way back instead: pushes of a hand make the
-  /// delay overshoot, further with each step. Cost: O(measurements), and a matrix inverse for each
-  /// turn, of 200 at most.
+  /// `motion`: by the corrected fixes, at the measurements' times less the delay. Cost:
+  /// O(measurements), and a matrix inverse for each turn, of 200 at most.
   void step(const WheelReadings& readings, const std::vector<EncoderMotion>& motion);
 
-  /// Returns to the parameters with the smallest residuals.
-  void step_back() { at_ = from_; }
+  /// The largest change of a parameter in the last step, in standard deviations.
+  [[nodiscard]] double last_move() const { return last_move_; }
 
-  /// Compares no longer with the residuals so far, as other fixes follow.
-  void forget_residuals() { from_variance_m2ps4_ = std::numeric_limits<double>::infinity(); }
-
-  /// Measurement less its model, and the derivatives of the model along u and v.
-  [[nodiscard]] std::pair<Mat<2>, Mat<count, 2>> residual_of(const Mat<2>& reading,
-                                                             const EncoderMotion& motion) const;
+  /// Measurement less its model, along u and v, and the model's derivatives.
+  struct Residual {
+    Mat<2> off, by_rotation;  ///< by ψ
+    Mat<count, 2> by_parameters;
+  };
+  [[nodiscard]] Residual residual_of(const Mat<2>& reading, const EncoderMotion& motion) const;
 
   /// f(epoch, measurement) for each measurement of the sensor in steady rotation.
   template <class Function>
@@ -91,8 +90,7 @@ class GravityFit {
  private:
   double gravity_mps2_, variance_ = 1.0, lost_ = 1.0;
   Row prior_ = Row::Zero(), prior_std_, at_, std_ = Row::Zero();
-  Row from_ = Row::Zero();  ///< last point from which a whole step was taken
-  double from_variance_m2ps4_ = std::numeric_limits<double>::infinity();
+  double last_move_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace proofmass::estimate

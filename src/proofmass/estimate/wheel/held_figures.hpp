@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -68,6 +69,30 @@ inline void widen(Run& change, const Run& other) {
   change.turns = larger(change.turns, other.turns);
 }
 
+/// Root sums of squares of differences between runs.
+struct RootSums {
+  std::vector<double> angle_rad, speed_radps, accel_radps2;
+  Eigen::MatrixXd constants_cov;
+  double turns = 0.0;
+
+  RootSums(std::size_t epochs, Eigen::Index constants)
+      : angle_rad(epochs),
+        speed_radps(epochs),
+        accel_radps2(epochs),
+        constants_cov(Eigen::MatrixXd::Zero(constants, constants)) {}
+
+  void add(const Run& by) {
+    const auto add_to = [](std::vector<double>& sums, const std::vector<double>& of) {
+      for (std::size_t k = 0; k < sums.size(); ++k) add_in_square(sums[k], of[k]);
+    };
+    add_to(angle_rad, by.angle_rad);
+    add_to(speed_radps, by.speed_radps);
+    add_to(accel_radps2, by.accel_radps2);
+    constants_cov += by.constants * by.constants.transpose();
+    add_in_square(turns, by.turns);
+  }
+};
+
 /// Contribution of the parameters that the passes hold: the lever arms, the delay of the sensors'
 /// filters, the rolling radius and a warm-up; delay and rolling radius are not reliably determined
 /// by any likelihood. The smoother is repeated with the parameter changed by a share of its
@@ -102,12 +127,19 @@ class HeldFigures {
     if (readings_.rolling_radius_m.std > 0.0)
       changes.push_back([this] { return change_by_rolling_radius(); });
     vary_warm_up(changes);
-    std::vector<std::optional<Run>> found(changes.size());
-    in_parallel(changes.size(), {},
-                [&](std::size_t i, const Progress&) { found[i] = changes[i](); });
-    if (!std::ranges::all_of(found, [](const auto& change) { return change.has_value(); }))
-      return false;
-    for (const std::optional<Run>& change : found) add(*change, fit);
+    // A few at once, as each holds three figures of every epoch.
+    const std::size_t at_once = std::max(1U, std::thread::hardware_concurrency());
+    RootSums sums(readings_.time_s.size(), fit.constants.size());
+    for (std::size_t first = 0; first < changes.size(); first += at_once) {
+      std::vector<std::optional<Run>> found(std::min(at_once, changes.size() - first));
+      in_parallel(found.size(), {},
+                  [&](std::size_t i, const Progress&) { found[i] = changes[first + i](); });
+      for (const std::optional<Run>& change : found) {
+        if (!change) return false;
+        sums.add(*change);
+      }
+    }
+    add(sums, fit);
     return true;
   }
 
@@ -250,7 +282,7 @@ class HeldFigures {
                                [](double a, double b) { return std::abs(a - b) < slip_rad; });
   }
 
-  void add(const Run& by, WheelFit& fit) const {
+  void add(const RootSums& sums, WheelFit& fit) const {
     WheelSeries& series = fit.series;
     std::size_t at = 0;
     for (std::size_t k = 0; k < series.time_s.size(); ++k) {
@@ -259,13 +291,13 @@ class HeldFigures {
       const auto off = [&](const std::vector<double>& of) {
         return between(of, at, series.time_s[k]);
       };
-      add_in_square(series.angle_std_rad[k], off(by.angle_rad));
-      add_in_square(series.filtered_angle_std_rad[k], off(by.angle_rad));
-      add_in_square(series.speed_std_radps[k], off(by.speed_radps));
-      add_in_square(series.accel_std_radps2[k], off(by.accel_radps2));
+      add_in_square(series.angle_std_rad[k], off(sums.angle_rad));
+      add_in_square(series.filtered_angle_std_rad[k], off(sums.angle_rad));
+      add_in_square(series.speed_std_radps[k], off(sums.speed_radps));
+      add_in_square(series.accel_std_radps2[k], off(sums.accel_radps2));
     }
-    fit.constants_cov += by.constants * by.constants.transpose();
-    add_in_square(fit.turns.std, by.turns);
+    fit.constants_cov += sums.constants_cov;
+    add_in_square(fit.turns.std, sums.turns);
   }
 
   const WheelReadings& readings_;

@@ -306,7 +306,7 @@ Joint fit_jointly(const std::vector<WheelSensor>& sensors, Pair pair, const Whee
     joint.readings.found_rolling_radius_m = one.readings.found_rolling_radius_m;
     joint.readings.encoder->direction = one.readings.encoder->direction;
     joint.readings.encoder->zero_rad = one.readings.encoder->zero_rad;
-    joint.readings.encoder->more_variance_rad2 = one.readings.encoder->more_variance_rad2;
+    joint.readings.encoder->more = one.readings.encoder->more;
   }
   for (std::size_t s = 0; s < 2; ++s)
     joint.readings.sensors[s].variance_m2ps4 = pair.singles[s].readings.sensors[0].variance_m2ps4;

@@ -133,15 +133,25 @@ using EncoderErrors = std::array<Uncertain, wheel::encoder_states - 1>;
 inline constexpr EncoderErrors uncalibrated_errors_rad{
     Uncertain{0.0, 0.05}, {0.0, 0.05}, {0.0, 0.05}, {0.0, 0.05}};
 
+/// Estimated variance of an encoder's fixes beyond that of the counts.
+struct FixNoise {
+  double constant_rad2 = 0.0;  ///< such as errors of higher order
+  double stamps_s2 = 0.0;      ///< of the time stamps
+
+  [[nodiscard]] double variance_rad2(double speed_radps) const {
+    return constant_rad2 + square(speed_radps) * stamps_s2;
+  }
+};
+
 /// An encoder's angle at each epoch: the mean of its fixes since the epoch before.
 struct EncoderReadings {
   std::vector<double> angle_rad;      ///< its own, unwrapped; NaN without a fix
   std::vector<double> age_s;          ///< the epoch's time less the fixes'
   std::vector<double> variance_rad2;  ///< of the fixes, from the counts' width
-  double more_variance_rad2 = 0.0;    ///< estimated: time stamps, errors of higher order
-  double direction = 1.0;             ///< d
-  double zero_rad = 0.0;              ///< current estimate of o; its state is the difference
-  double walk_psd = 0.0;              ///< random walk of o, rad²/s, for single missed counts
+  FixNoise more{};
+  double direction = 1.0;  ///< d
+  double zero_rad = 0.0;   ///< current estimate of o; its state is the difference
+  double walk_psd = 0.0;   ///< random walk of o, rad²/s, for single missed counts
   EncoderErrors errors_rad = uncalibrated_errors_rad;  ///< prior
   double nonlinearity = 0.0;  ///< standard deviation of the accelerometers', at 1 g
 
@@ -433,7 +443,7 @@ struct WheelModel {
       row.predicted += c * x(at + 2 * n - 1) + s * x(at + 2 * n);
     }
     row.value = encoder->direction * psi - encoder->zero_rad;
-    row.variance = encoder->variance_rad2[k] + encoder->more_variance_rad2;
+    row.variance = encoder->variance_rad2[k] + encoder->more.variance_rad2(now.speed);
   }
 
   void read_sensor(const State& x,

@@ -1,3 +1,10 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
 
@@ -64,16 +71,69 @@ class VarianceProfile {
   bool steady_ = true;
 };
 
+/// What the innovations of an encoder's fixes show of their variance beyond that of the counts. All
+/// fixes count: where the variance is still too small, the gate rejects most of them.
+class FixScatter {
+ public:
+  /// explained_rad2: variance of the innovation without FixNoise.
+  void add(double speed_radps, double innovation_rad, double explained_rad2) {
+    fixes_.push_back({square(speed_radps), square(innovation_rad), explained_rad2});
+  }
+
+  /// From the means at the lower speeds and at the higher, to which a wild fix adds little. At one
+  /// speed all of it is constant. nullopt for too few fixes.
+  [[nodiscard]] std::optional<FixNoise> noise() {
+    if (static_cast<double>(fixes_.size()) < 2.0 * fewest_readings) return std::nullopt;
+    constexpr double one_speed = 1.2;
+    const auto middle = fixes_.begin() + static_cast<std::ptrdiff_t>(fixes_.size() / 2);
+    std::ranges::nth_element(fixes_, middle, {}, &Fix::speed2);
+    const Half slow = half_of({fixes_.begin(), middle}), fast = half_of({middle, fixes_.end()});
+    if (fast.speed2 < one_speed * slow.speed2) {
+      const Half all = half_of(fixes_);
+      return FixNoise{std::max(all.variance, 0.0), 0.0};
+    }
+    FixNoise noise;
+    noise.stamps_s2 = std::clamp((fast.variance - slow.variance) / (fast.speed2 - slow.speed2), 0.0,
+                                 std::max(fast.variance, 0.0) / fast.speed2);
+    noise.constant_rad2 = std::max(slow.variance - noise.stamps_s2 * slow.speed2, 0.0);
+    return noise;
+  }
+
+ private:
+  struct Fix {
+    double speed2, innovation2, explained;
+  };
+  struct Half {
+    double speed2, variance;
+  };
+
+  static Half half_of(std::span<const Fix> fixes) {
+    constexpr double median_of_square = 0.454936;  // χ² of one degree of freedom
+    constexpr double wild = 10.0;
+    std::vector<double> innovation2;
+    for (const Fix& fix : fixes) innovation2.push_back(fix.innovation2);
+    const double most = wild * *median(innovation2) / median_of_square;
+    Half half{0.0, 0.0};
+    for (const Fix& fix : fixes) {
+      half.speed2 += fix.speed2;
+      half.variance += std::min(fix.innovation2, most) - fix.explained;
+    }
+    const auto count = static_cast<double>(fixes.size());
+    return {half.speed2 / count, half.variance / count};
+  }
+
+  std::vector<Fix> fixes_;
+};
+
 /// The channels of epoch k that belong to each sensor, in the order written by measure(): two for
-/// each sensor measured, one for its gyroscope, one for the encoder, whose sums are those of the
-/// variance that its fixes do not explain.
+/// each sensor measured, one for its gyroscope, one for the encoder.
 template <int S>
 void gather(const WheelReadings& readings,
             std::size_t k,
             const StepOf<WheelModel<S>>& step,
             std::array<NoiseStretch*, 2> stretches,
             std::array<NoiseStretch, 2>& gyros,
-            NoiseStretch& encoder) {
+            FixScatter& fixes) {
   int channel = 0;
   for (std::size_t s = 0; s < readings.sensors.size() && channel < step.count; ++s) {
     const std::int64_t row = readings.epochs[k].row[s];
@@ -98,10 +158,9 @@ void gather(const WheelReadings& readings,
   }
   if (!readings.encoder || !readings.encoder->has(k)) return;
   const auto& u = step.updates[static_cast<std::size_t>(channel)];
-  if (!u.used) return;
-  encoder.innovation2 += std::min(u.nis(), 4.0 * wheel_gate.huber) * u.expected;
-  encoder.explained += u.expected - readings.encoder->more_variance_rad2;
-  encoder.readings += 1.0;
+  const double speed_radps = step.filtered.mean(wheel::speed);
+  fixes.add(speed_radps, u.innovation,
+            u.expected - readings.encoder->more.variance_rad2(speed_radps));
 }
 
 /// Variance of white noise in the measurements from their third differences, to which a slowly
@@ -219,15 +278,13 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
     if (s == 0) readings.shakes = shakes;
   }
   std::array<NoiseStretch, 2> gyros;
-  NoiseStretch encoder;
+  FixScatter fixes;
   auto state = prior_state<S>(prior);
   filter(model, 0, model.size(), wheel_gate, state, [&](std::size_t k, const auto& step) {
     const auto i = static_cast<std::size_t>((readings.time_s[k] - start_s) / length_s);
-    gather<S>(readings, k, step, {&stretches[0][i], &stretches[1][i]}, gyros, encoder);
+    gather<S>(readings, k, step, {&stretches[0][i], &stretches[1][i]}, gyros, fixes);
   });
-  if (encoder.readings > fewest_readings)
-    readings.encoder->more_variance_rad2 =
-        std::max(0.0, (encoder.innovation2 - encoder.explained) / encoder.readings);
+  if (const auto noise = fixes.noise()) readings.encoder->more = *noise;
   for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
     if (gyros[s].readings > 20.0) readings.sensors[s].speed_variance = gyros[s].variance();
     const VarianceProfile profile(stretches[s], length_s);
