@@ -50,7 +50,9 @@ Estimated estimated(std::string_view name, std::uint64_t seed) {
   const auto scenario = std::ranges::find(wheel_world::scenarios(), name, &Scenario::name);
   const wheel_world::World world = scenario->draw(seed);
   Estimated out{wheel_world::record(world, seed), {Error{}}};
-  out.said = estimate::estimate_wheel(out.recorded.sensors, scenario->options(world));
+  estimate::WheelOptions options = scenario->options(world);
+  options.encoder = out.recorded.encoder;
+  out.said = estimate::estimate_wheel(out.recorded.sensors, options);
   return out;
 }
 
