@@ -2,20 +2,24 @@
 // extended Kalman filter with the Rauch–Tung–Striebel smoother: dense F over all states, all
 // channels of an epoch at once, every state stored, the inverse by LDLᵀ. Both run the same
 // WheelModel over the same measurements; the largest difference of their smoothed angles is printed
-// to show that they compute the same result.
+// to show that they compute the same result. Then the whole estimate_wheel() in units of one filter
+// and smoother, of a tenth of the epochs at most.
 //
 //   wheel_bench [most epochs, 1e6 if not given]
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <complex>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <random>
+#include <string>
 #include <sys/resource.h>
 #include <vector>
 
+#include "proofmass/estimate/wheel.hpp"
 #include "proofmass/estimate/wheel/model.hpp"
 
 namespace {
@@ -198,10 +202,38 @@ void compare(std::size_t most) {
   }
 }
 
+/// The whole estimate, with its search, noise and lever arms, in units of one filter and smoother.
+void compare_estimate(std::size_t most) {
+  std::printf("estimate_wheel() of two sensors at %.0f Hz\n", rate_hz);
+  std::printf("%10s %14s %14s %18s %14s\n", "samples", "wall s", "processor s", "filter+smoother",
+              "peak RSS MB");
+  for (std::size_t count = 10'000; count <= most; count *= 10) {
+    const Recording recording = record(count);
+    std::vector<WheelSensor> sensors;
+    for (const PlanarReadings& readings : recording.sensors) {
+      WheelSensor& sensor = sensors.emplace_back();
+      sensor.accel_mps2 = {readings.u_mps2, readings.v_mps2, {}};
+      for (std::size_t k = 0; k < count; ++k)
+        sensor.time_s.push_back(static_cast<double>(k) / rate_hz);
+    }
+    const double one_s = seconds([&] { our_smoother(model_of<2>(recording)); });
+    const auto began = std::chrono::steady_clock::now();
+    std::string failure;
+    const double whole_s = seconds([&] {
+      const auto solution = estimate_wheel(sensors, {});
+      if (!solution) failure = solution.error().message;
+    });
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - began;
+    std::printf("%10zu %14.1f %14.1f %18.1f %14ld %s\n", count, wall.count(), whole_s,
+                whole_s / one_s, peak_rss_mb(), failure.c_str());
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const auto most = static_cast<std::size_t>(argc > 1 ? std::strtod(argv[1], nullptr) : 1e6);
   compare<2>(most);
   compare<1>(most);
+  compare_estimate(most / 10);
 }
