@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/gravity_fit.hpp"
 
@@ -248,6 +249,7 @@ EncoderReadings encoder_readings(const WheelEncoder& encoder, const std::vector<
   out.walk_psd = square(encoder.step_rad > 0.0 ? encoder.step_rad : 1e-3) / 100.0;
   if (encoder.errors_rad) out.errors_rad = *encoder.errors_rad;
   out.nonlinearity = encoder.nonlinearity;
+  out.step_rad = encoder.step_rad;
   const signal::AngleFixes& fixes = encoder.fixes;
   const double step_s = (time_s.back() - time_s.front()) /
                         static_cast<double>(std::max<std::size_t>(time_s.size(), 2) - 1);
@@ -278,6 +280,70 @@ EncoderReadings averaged(const EncoderReadings& encoder,
         mean.add(time_s[k] - encoder.age_s[k], encoder.angle_rad[k], encoder.variance_rad2[k]);
     }
     mean.append_to(out, middle_s);
+  }
+  return out;
+}
+
+std::array<double, wheel::encoder_states - 1> coherent_rounding_rad(
+    const EncoderReadings& encoder,
+    const std::vector<double>& time_s,
+    const std::vector<double>& own_rad) {
+  constexpr int count = wheel::encoder_states;
+  constexpr std::size_t positions = 8;
+  // The estimated angle follows a part of the rounding: its errors may differ by a twentieth of a
+  // count, with these signs.
+  constexpr double own_error = 0.05;
+  constexpr std::array<std::array<int, count - 1>, positions> signs{{{1, 1, 1, 1},
+                                                                     {1, -1, 1, -1},
+                                                                     {1, 1, -1, -1},
+                                                                     {1, -1, -1, 1},
+                                                                     {-1, -1, -1, -1},
+                                                                     {-1, 1, -1, 1},
+                                                                     {-1, -1, 1, 1},
+                                                                     {-1, 1, 1, -1}}};
+  std::array<double, count - 1> out{};
+  if (!(encoder.step_rad > 0.0)) return out;
+  Mat<count, count> normal = Mat<count, count>::Zero();
+  std::array<Mat<count>, positions> sums;
+  sums.fill(Mat<count>::Zero());
+  double last_rad = no_angle, last_s = 0.0;
+  for (std::size_t k = 0; k < own_rad.size(); ++k) {
+    const double psi = own_rad[k];
+    if (!encoder.has(k) || std::isnan(psi)) continue;
+    const double at_s = time_s[k] - encoder.age_s[k];
+    // Half of the angle between the samples on either side: a fix is at the middle of an interval,
+    // as is the one before.
+    const double half = 0.5 * (psi - last_rad);
+    const bool is_next = k > 0 && at_s - last_s < 1.5 * (time_s[k] - time_s[k - 1]);
+    last_rad = psi;
+    last_s = at_s;
+    if (!is_next || std::isnan(half)) continue;
+    Mat<count> x = Mat<count>::Ones();
+    for (int n = 1; n <= wheel::encoder_orders; ++n) {
+      x(2 * n - 1) = std::cos(n * psi);
+      x(2 * n) = std::sin(n * psi);
+    }
+    const double weight = 1.0 / encoder.variance_rad2[k];
+    normal += weight * x * x.transpose();
+    for (std::size_t i = 0; i < positions; ++i) {
+      double shift = static_cast<double>(i) / positions;
+      for (int at = 1; at < count; ++at)
+        shift += own_error * signs[i][static_cast<std::size_t>(at - 1)] * x(at);
+      const double before = std::floor((psi - half) / encoder.step_rad - shift);
+      const double after = std::floor((psi + half) / encoder.step_rad - shift);
+      // As signal::fixes_of_samples(): the boundary, or the mean of the counts' middles.
+      const double fix =
+          std::abs(after - before) == 1.0 ? std::max(before, after) : 0.5 * (before + after) + 0.5;
+      sums[i] += weight * ((fix + shift) * encoder.step_rad - psi) * x;
+    }
+  }
+  if (!(normal(0, 0) > 0.0)) return out;
+  const Mat<count, count> white = positive_inverse(normal);
+  for (int at = 1; at < count; ++at) {
+    double squares = 0.0;
+    for (const Mat<count>& sum : sums) squares += square(white.row(at).dot(sum));
+    out[static_cast<std::size_t>(at - 1)] =
+        std::sqrt(std::max(squares / positions - white(at, at), 0.0));
   }
   return out;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -18,6 +19,16 @@ namespace proofmass::estimate {
 [[nodiscard]] EncoderReadings averaged(const EncoderReadings& encoder,
                                        const std::vector<double>& time_s,
                                        std::size_t each);
+
+/// What the rounding to counts may add to each of the encoder's errors (c, s), n = 1 and 2, beyond
+/// what it would as white noise: at a steady speed it repeats in step with the samples and may
+/// resemble a few cycles a turn. Root mean square over positions of the counts of the regression on
+/// the errors of the rounding that the estimated angles would have had. `own_rad`: the encoder's
+/// own angle at each fix, as estimated; NaN where there is none. Cost: O(fixes).
+[[nodiscard]] std::array<double, wheel::encoder_states - 1> coherent_rounding_rad(
+    const EncoderReadings& encoder,
+    const std::vector<double>& time_s,
+    const std::vector<double>& own_rad);
 
 struct EncoderTrack {
   WheelTrack track;

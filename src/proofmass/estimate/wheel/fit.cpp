@@ -8,6 +8,7 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/colour.hpp"
 #include "proofmass/estimate/wheel/doubts.hpp"
+#include "proofmass/estimate/wheel/encoder.hpp"
 #include "proofmass/estimate/wheel/held_figures.hpp"
 #include "proofmass/estimate/wheel/rivals.hpp"
 #include "proofmass/estimate/wheel/settle.hpp"
@@ -229,6 +230,27 @@ void add_nonlinearity(double nonlinearity, WheelFit& fit) {
   add_in_square(fit.turns.std, std::numbers::sqrt2 * nonlinearity / rad_per_turn);
 }
 
+/// The errors of the encoder with its rounding as in coherent_rounding_rad().
+template <int S>
+void add_rounding(const WheelReadings& readings, WheelFit& fit) {
+  constexpr int first = wheel::encoder(S) - wheel::first_of(0);
+  const EncoderReadings& encoder = *readings.encoder;
+  std::vector<double> own_rad(encoder.angle_rad.size());
+  for (std::size_t k = 0; k < own_rad.size(); ++k) {
+    double shown = fit.series.angle_rad[k] - encoder.age_s[k] * fit.series.speed_radps[k] +
+                   encoder.zero_rad + fit.constants(first);
+    for (int n = 1; n <= wheel::encoder_orders; ++n)
+      shown += encoder.direction *
+               (std::cos(n * encoder.angle_rad[k]) * fit.constants(first + 2 * n - 1) +
+                std::sin(n * encoder.angle_rad[k]) * fit.constants(first + 2 * n));
+    own_rad[k] = encoder.direction * shown;
+  }
+  const auto more_rad = coherent_rounding_rad(encoder, readings.time_s, own_rad);
+  for (int i = 0; i < wheel::encoder_states - 1; ++i)
+    fit.constants_cov(first + 1 + i, first + 1 + i) +=
+        square(more_rad[static_cast<std::size_t>(i)]);
+}
+
 /// Number of measurements that may be averaged before the wheel turns by a twentieth of a radian.
 std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack& track) {
   double fastest = 0.0;
@@ -372,7 +394,10 @@ WheelFit fit_sensors(WheelReadings& readings,
   add_gravity_uncertainty<S>(readings, settled.places_cov * positive_inverse(belief.cov), fit);
   add_hub_bursts(readings, track.path, fit);
   widen_at_rest<S>(readings, fit);
-  if (readings.encoder) add_nonlinearity<S>(readings.encoder->nonlinearity, fit);
+  if (readings.encoder) {
+    add_nonlinearity<S>(readings.encoder->nonlinearity, fit);
+    add_rounding<S>(readings, fit);
+  }
   fit.turns_candidates = turns_candidates(fit);
   return fit;
 }

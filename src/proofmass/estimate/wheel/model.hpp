@@ -148,6 +148,7 @@ struct EncoderReadings {
   std::vector<double> angle_rad;      ///< its own, unwrapped; NaN without a fix
   std::vector<double> age_s;          ///< the epoch's time less the fixes'
   std::vector<double> variance_rad2;  ///< of the fixes, from the counts' width
+  double step_rad = 0.0;              ///< width of a count; 0: no visible steps
   FixNoise more{};
   double direction = 1.0;  ///< d
   double zero_rad = 0.0;   ///< current estimate of o; its state is the difference
