@@ -77,7 +77,8 @@ class FixScatter {
  public:
   /// explained_rad2: variance of the innovation without FixNoise.
   void add(double speed_radps, double innovation_rad, double explained_rad2) {
-    fixes_.push_back({square(speed_radps), square(innovation_rad), explained_rad2});
+    const Fix fix{square(speed_radps), square(innovation_rad), explained_rad2};
+    if (std::isfinite(fix.speed2 + fix.innovation2 + fix.explained)) fixes_.push_back(fix);
   }
 
   /// From the means at the lower speeds and at the higher, to which a wild fix adds little. At one
