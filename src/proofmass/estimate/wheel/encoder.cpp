@@ -170,7 +170,8 @@ void join_missed(const EncoderOffsets& offsets, std::vector<signal::CountSlip>& 
 /// than turns, or some whose removal does not improve the fit, are not missed counts; then none is
 /// removed.
 GravityFit compare_with_gravity(const WheelReadings& readings, EncoderTrack& out) {
-  constexpr int fewest_rounds = 3, most_rounds = 16;
+  // Parabolas of other fixes may move the fit forth and back by half a standard deviation for ever.
+  constexpr int fewest_rounds = 3, enough_rounds = 8, most_rounds = 16;
   constexpr double small_move = 0.1;
   GravityFit fit(readings.delay_s, out.encoder.errors_rad.value_or(uncalibrated_errors_rad),
                  readings.one_speed, readings.gravity_mps2);
@@ -185,7 +186,7 @@ GravityFit compare_with_gravity(const WheelReadings& readings, EncoderTrack& out
                                   fit.figure(GravityFit::delay).value);
     fit.step(readings, motion);
     const bool has_converged = fit.last_move() < small_move;
-    settled = settled || (round >= fewest_rounds && has_converged);
+    settled = settled || (round >= fewest_rounds && has_converged) || round >= enough_rounds;
     if (!settled) continue;
     bool changed = false;
     ++rounds_since_change;
@@ -318,6 +319,9 @@ std::array<double, wheel::encoder_states - 1> coherent_rounding_rad(
     last_rad = psi;
     last_s = at_s;
     if (!is_next || std::isnan(half)) continue;
+    // Stamped edges are not rounded.
+    const double widest_rad = std::min(2.0 * std::abs(half), encoder.step_rad);
+    if (encoder.variance_rad2[k] < 0.25 * square(widest_rad) / 12.0) continue;
     Mat<count> x = Mat<count>::Ones();
     for (int n = 1; n <= wheel::encoder_orders; ++n) {
       x(2 * n - 1) = std::cos(n * psi);

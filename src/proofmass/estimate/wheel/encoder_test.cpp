@@ -72,11 +72,14 @@ TEST(CoherentRounding, IsWhiteWhereTheSpeedVaries) {
   for (int i = 1; i < 5; ++i) EXPECT_LT(std::abs(varying.errors()(i)), 3e-4);
 }
 
-TEST(CoherentRounding, IsNothingWithoutSteps) {
+TEST(CoherentRounding, IsNothingWithoutStepsOrWithStampedEdges) {
   Rounded smooth(0.0);
   smooth.readings.step_rad = 0.0;
-  for (const double more : coherent_rounding_rad(smooth.readings, smooth.time_s, smooth.own_rad))
-    EXPECT_EQ(more, 0.0);
+  Rounded stamped(0.0);
+  for (double& variance : stamped.readings.variance_rad2) variance = 1e-12;
+  for (const Rounded* one : {&smooth, &stamped})
+    for (const double more : coherent_rounding_rad(one->readings, one->time_s, one->own_rad))
+      EXPECT_EQ(more, 0.0);
 }
 
 }  // namespace
