@@ -108,6 +108,7 @@ void RecordOverview::add_block(View<double> samples) {
 }
 
 RecordOverview::Sums RecordOverview::sums_of(View<double> samples) {
+  PM_EXPECTS(samples.size() <= block);
   std::array<double, block> finite{};
   std::size_t count = samples.size();
   if (count > 0 && !all_finite(samples.data(), count)) {
