@@ -53,7 +53,7 @@ class RecordOverview {
 
   void add_sums(View<double> samples);
   void add_block(View<double> samples);
-  /// Of the finite samples of a block, or of a part of one.
+  /// Sums over the finite samples of a block, complete or not.
   [[nodiscard]] static Sums sums_of(View<double> samples);
   void add_extremes(const RecordOverview& part);
   void look_at_extremes(View<double> finite);

@@ -6,7 +6,7 @@
 // processors. A fixed order of summation gives the same digits on all of them.
 namespace proofmass::characterise {
 
-/// Of `pairs` pairs of neighbouring values: second − first, and the mean.
+/// Splits `pairs` pairs of neighbouring values into their differences, second − first, and means.
 void split_pairs(const double* values, std::size_t pairs, double* differences, double* means);
 
 struct PresentSum {
@@ -14,7 +14,7 @@ struct PresentSum {
   std::size_t count = 0;
 };
 
-/// Of the values that are not NaN.
+/// Sum and number of the values that are not NaN.
 [[nodiscard]] PresentSum sum_present(const double* values, std::size_t n);
 
 /// Σ x² of the values whose square is finite.

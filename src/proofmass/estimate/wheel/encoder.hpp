@@ -24,7 +24,7 @@ namespace proofmass::estimate {
 /// what it would as white noise: at a steady speed it repeats in step with the samples and may
 /// resemble a few cycles a turn. Root mean square over positions of the counts of the regression on
 /// the errors of the rounding that the estimated angles would have had. `own_rad`: the encoder's
-/// own angle at each fix, as estimated; NaN where there is none. Cost: O(fixes).
+/// own angle at each fix, as estimated; NaN where it has no fix. Cost: O(fixes).
 [[nodiscard]] std::array<double, wheel::encoder_states - 1> coherent_rounding_rad(
     const EncoderReadings& encoder,
     const std::vector<double>& time_s,
