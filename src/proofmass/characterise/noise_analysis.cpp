@@ -69,30 +69,42 @@ class Passes {
       events = signal::find_events(series_, {.rate_hz = options_.rate_hz});
     };
     const auto accumulate = [&] { accumulator.add(used); };
-    const auto follow_level = [&] { level.add(used); };
+    const auto follow_level = [&] { level_.add(used); };
+    const auto fit_model = [&] {
+      analysis = accumulator.finish_spectrum();
+      analysis.stationarity =
+          test_stationarity(level_, used, options_.rate_hz, analysis.lines.lines);
+    };
     report("outliers and steps", 0.0);
     if (options_.exclude_events)
       run_tasks(series_.size(), {find_events, look});
     else
-      run_tasks(series_.size(), {accumulate, find_events, follow_level, look});
+      run_tasks(series_.size(), {accumulate, look});
     if (Status varies = overview.check_spread(options_.lsb); !varies) return varies;
     if (Status free = overview.check_rails(options_.lsb); !free) return free;
     short_term_std = overview.short_term_std();
     report("spectrum and deviations", 0.4);
-    if (!options_.exclude_events) return Done{};
+    if (!options_.exclude_events) {
+      run_tasks(series_.size(), {find_events, [&] {
+                                   follow_level();
+                                   fit_model();
+                                 }});
+      return Done{};
+    }
     if (!events.empty()) {
       apart_ = without_events(series_, events, options_.rate_hz);
       used = apart_;
     }
     overview = RecordOverview();
     run_tasks(used.size(), {accumulate, follow_level, [&] { overview.add(used); }});
+    fit_model();
     return Done{};
   }
 
+  NoiseAnalysis analysis;   // spectrum, lines, model and stationarity
   RecordOverview overview;  // of `used`
   std::vector<signal::Event> events;
   NoiseAccumulator accumulator;
-  StationarityTest level;
   double short_term_std = 0.0;  // of the whole series
   View<double> used;            // the series, or what is kept of it
 
@@ -101,6 +113,7 @@ class Passes {
     if (options_.progress) options_.progress(stage, fraction);
   }
 
+  StationarityTest level_;
   View<double> series_;
   const NoiseOptions& options_;
   std::vector<double> apart_;
@@ -120,9 +133,7 @@ Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& opt
   Passes passes(series, options);
   if (Status usable = passes.run(); !usable) return usable.error();
   const View<double> used = passes.used;
-  NoiseAnalysis analysis = passes.accumulator.finish_spectrum();
-  analysis.stationarity =
-      test_stationarity(passes.level, used, options.rate_hz, analysis.lines.lines);
+  NoiseAnalysis analysis = std::move(passes.analysis);
   if (!analysis.stationarity.stationary) {
     analysis.parts = noise_of_parts(used, options);
     widen_to_parts(analysis.parts, analysis.model);

@@ -61,14 +61,18 @@ void in_parallel(std::size_t parts,
   }
 }
 
-void run_tasks(std::size_t samples, std::initializer_list<std::function<void()>> tasks) {
+void run_tasks(std::size_t samples, std::span<const std::function<void()>> tasks) {
   // Starting a thread takes as long as some ten thousand samples.
   constexpr std::size_t worth_threads = std::size_t{1} << 18;
   if (samples < worth_threads) {
     for (const std::function<void()>& task : tasks) task();
     return;
   }
-  in_parallel(tasks.size(), {}, [&](std::size_t k, const Progress&) { tasks.begin()[k](); });
+  in_parallel(tasks.size(), {}, [&](std::size_t k, const Progress&) { tasks[k](); });
+}
+
+void run_tasks(std::size_t samples, std::initializer_list<std::function<void()>> tasks) {
+  run_tasks(samples, std::span(tasks.begin(), tasks.size()));
 }
 
 }  // namespace proofmass

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <initializer_list>
+#include <span>
 
 #include "proofmass/core/progress.hpp"
 
@@ -17,6 +18,7 @@ void in_parallel(std::size_t parts,
 
 /// Calls independent tasks, which together process `samples`: in parallel if these are enough to
 /// pay for the threads.
+void run_tasks(std::size_t samples, std::span<const std::function<void()>> tasks);
 void run_tasks(std::size_t samples, std::initializer_list<std::function<void()>> tasks);
 
 }  // namespace proofmass

@@ -13,14 +13,14 @@ namespace {
 
 double samples_in(const RestBlocks& blocks, const RestRun& run) {
   double count = 0.0;
-  for (std::size_t k = run.first; k < run.end; ++k) count += blocks.at[k].count;
+  for (std::size_t k = run.first; k < run.end; ++k) count += blocks.count[k];
   return count;
 }
 
 Rest rest_of(const RestBlocks& blocks, const RestRun& run) {
   Rest rest{blocks.first_sample(run.first), blocks.end_sample(run.end - 1) - 1};
-  while (rest.first < rest.last && !blocks.there[rest.first]) ++rest.first;
-  while (rest.first < rest.last && !blocks.there[rest.last]) --rest.last;
+  while (rest.first < rest.last && !blocks.is_there(rest.first)) ++rest.first;
+  while (rest.first < rest.last && !blocks.is_there(rest.last)) --rest.last;
   return rest;
 }
 
@@ -67,7 +67,7 @@ RestSearch find_rests(View<View<double>> axes, const RestOptions& options) {
   if (!noise) {
     search.why_none = fmt::format(
         "{} usable samples are too few to distinguish the noise of the sensor from motion",
-        std::ranges::count(blocks.there, 1));
+        blocks.samples_there());
     return search;
   }
   if (noise->unrest >= 1.0) {

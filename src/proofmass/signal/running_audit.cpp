@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <utility>
 
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/in_parallel.hpp"
 #include "proofmass/signal/audit/audit_notes.hpp"
 #include "proofmass/signal/audit/running_channel.hpp"
 #include "proofmass/signal/audit/timing_audit.hpp"
@@ -42,7 +44,6 @@ struct RunningAudit::State {
       : rate_hz(head.time.rate_hz), timing(head.time), waiting(head.channels.size()) {
     const std::size_t count = head.channels.size();
     channels.assign(count, RunningChannel(sample_capacity(count)));
-    views.resize(count);
     for (std::size_t c = 0; c < count; ++c) {
       names.push_back(head.channels[c].name);
       if (is_inertial(head.channels[c])) inertial.push_back(c);
@@ -50,11 +51,11 @@ struct RunningAudit::State {
     }
   }
 
+  void take_chunks(const Block& chunks);
   void take(const Block& block, std::size_t from, std::size_t rows);
   void wait(const Block& block, std::size_t from, std::size_t rows);
   void take_waiting();
-  void take_views(View<double> stamps_s);
-  void find_zero_rows(const SampleTimes& times);
+  void find_zero_rows(const Block& chunks);
   [[nodiscard]] std::size_t waiting_rows() const {
     return waiting.empty() ? 0 : waiting.front().size();
   }
@@ -72,12 +73,14 @@ struct RunningAudit::State {
   bool has_stamps = false, is_finished = false;
   std::vector<std::vector<double>> waiting;  ///< rows that do not fill a chunk yet
   std::vector<double> waiting_stamps_s;
-  std::vector<View<double>> views;  ///< views of the current chunk
 };
 
 void RunningAudit::State::take(const Block& block, std::size_t from, std::size_t rows) {
-  for (std::size_t c = 0; c < views.size(); ++c) views[c] = block.channels[c].subspan(from, rows);
-  take_views(has_stamps ? block.stamps_s.subspan(from, rows) : View<double>{});
+  Block part;
+  for (const View<double> channel : block.channels)
+    part.channels.push_back(channel.subspan(from, rows));
+  if (has_stamps) part.stamps_s = block.stamps_s.subspan(from, rows);
+  take_chunks(part);
 }
 
 void RunningAudit::State::wait(const Block& block, std::size_t from, std::size_t rows) {
@@ -90,32 +93,57 @@ void RunningAudit::State::wait(const Block& block, std::size_t from, std::size_t
 }
 
 void RunningAudit::State::take_waiting() {
-  std::ranges::copy(waiting, views.begin());
-  take_views(waiting_stamps_s);
+  Block all;
+  all.channels.assign(waiting.begin(), waiting.end());
+  all.stamps_s = waiting_stamps_s;
+  take_chunks(all);
   for (std::vector<double>& values : waiting) values.clear();
   waiting_stamps_s.clear();
 }
 
-void RunningAudit::State::take_views(View<double> stamps_s) {
-  const std::size_t rows = views.front().size();
-  const SampleTimes times{samples, stamps_s, rate_hz};
-  timing.add(stamps_s);
-  for (std::size_t c = 0; c < channels.size(); ++c) channels[c].add(views[c], times);
-  for (CounterColumn& column : counters) column.counter.add(views[column.channel]);
-  find_zero_rows(times);
-  last_s = times.at(samples + rows - 1).s;
+// The parts of the audit go over the chunks independently of one another.
+void RunningAudit::State::take_chunks(const Block& chunks) {
+  const std::size_t rows = chunks.rows();
+  const auto add_chunks = [&](View<double> values, const auto& add) {
+    for (std::size_t from = 0; from < values.size(); from += chunk)
+      add(from, values.subspan(from, std::min(chunk, values.size() - from)));
+  };
+  std::vector<std::function<void()>> tasks;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    tasks.emplace_back([&, c] {
+      add_chunks(chunks.channels[c], [&](std::size_t from, View<double> values) {
+        const View<double> stamps_s =
+            has_stamps ? chunks.stamps_s.subspan(from, values.size()) : View<double>{};
+        channels[c].add(values, {samples + from, stamps_s, rate_hz});
+      });
+    });
+    tasks.emplace_back([&, c] {
+      add_chunks(chunks.channels[c],
+                 [&](std::size_t, View<double> values) { channels[c].add_to_tails(values); });
+    });
+  }
+  tasks.emplace_back([&] {
+    add_chunks(chunks.stamps_s, [&](std::size_t, View<double> part_s) { timing.add(part_s); });
+    for (CounterColumn& column : counters)
+      add_chunks(chunks.channels[column.channel],
+                 [&](std::size_t, View<double> values) { column.counter.add(values); });
+    find_zero_rows(chunks);
+  });
+  run_tasks(rows * channels.size(), tasks);
+  last_s = SampleTimes{samples, chunks.stamps_s, rate_hz}.at(samples + rows - 1).s;
   samples += rows;
 }
 
 // Gravity alone keeps a working sensor from an output of zero on all inertial channels, if there
 // are at least three.
-void RunningAudit::State::find_zero_rows(const SampleTimes& times) {
+void RunningAudit::State::find_zero_rows(const Block& chunks) {
   if (inertial.size() < 3) return;
-  if (!std::ranges::all_of(inertial, [&](std::size_t c) { return channels[c].has_zero(); })) return;
-  const View<double> one = views[inertial.front()];
+  const SampleTimes times{samples, chunks.stamps_s, rate_hz};
+  const View<double> one = chunks.channels[inertial.front()];
   for (std::size_t k = 0; k < one.size(); ++k) {
     if (one[k] != 0.0) continue;
-    if (!std::ranges::all_of(inertial, [&](std::size_t c) { return views[c][k] == 0.0; })) continue;
+    if (!std::ranges::all_of(inertial, [&](std::size_t c) { return chunks.channels[c][k] == 0.0; }))
+      continue;
     zeros.add(times.at(samples + k));
     if (zero_rows.size() < most_listed) zero_rows.push_back(samples + k);
   }
@@ -140,7 +168,9 @@ void RunningAudit::add(const Block& block) {
     s.wait(block, 0, from);
     if (s.waiting_rows() == chunk) s.take_waiting();
   }
-  for (; from + chunk <= rows; from += chunk) s.take(block, from, chunk);
+  const std::size_t whole = (rows - from) / chunk * chunk;
+  if (whole > 0) s.take(block, from, whole);
+  from += whole;
   if (from < rows) s.wait(block, from, rows - from);
 }
 

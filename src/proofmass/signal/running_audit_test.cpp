@@ -152,6 +152,14 @@ TEST(RunningAudit, SaysTheSameHoweverTheRecordingIsCut) {
   }
 }
 
+TEST(RunningAudit, SaysTheSameInParallel) {
+  for (int trial = 0; trial < 4; ++trial) {
+    SCOPED_TRACE(trial);
+    const Recording recording = some_recording(80'000);
+    expect_same(audit_in_pieces(recording, 5000), audit(recording));
+  }
+}
+
 TEST(RunningAudit, SaysTheSameOfMoreValuesThanItKeeps) {
   Recording recording;
   recording.time.rate_hz = 1000.0;

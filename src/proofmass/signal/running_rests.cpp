@@ -44,7 +44,7 @@ struct RunningRests::State {
 void RunningRests::State::learn_noise() {
   const RestBlocks& blocks = recent.blocks();
   constexpr std::size_t windows_to_begin = 6;
-  if (!noise && blocks.at.size() < windows_to_begin * blocks.window) return;
+  if (!noise && blocks.size() < windows_to_begin * blocks.window) return;
   std::optional<RestNoise> found = find_rest_noise(blocks);
   if (!found || !found->followed || found->unrest >= 1.0) return;
   const double rise = noise ? level_of(*found, axis_count) - level_of(*noise, axis_count) : 0.0;
@@ -54,10 +54,9 @@ void RunningRests::State::learn_noise() {
 
 void RunningRests::State::look() {
   const RestBlocks& blocks = recent.blocks();
-  const RestBlock& newest = blocks.at.back();
   state.newest_s = recent.spans().back().end_s;
-  state.newest_there = !blocks.missing(blocks.at.size() - 1);
-  state.newest_mean = newest.mean;
+  state.newest_there = !blocks.missing(blocks.size() - 1);
+  state.newest_mean = blocks.at(blocks.size() - 1).mean;
   if (!noise || closed % blocks.window == 0) learn_noise();
   if (noise) {
     RestBlocks looked_at = blocks;
@@ -70,7 +69,7 @@ void RunningRests::State::look() {
 void RunningRests::State::look_at(const RestBlocks& looked_at,
                                   RestNoise known,
                                   const std::vector<RestRun>& quiet) {
-  const std::size_t end = looked_at.at.size();
+  const std::size_t end = looked_at.size();
   const std::vector<RestRun> runs = still_runs(looked_at, known, quiet);
   const bool was_resting = state.phase == RestPhase::resting;
   state.phase = RestPhase::moving;
@@ -84,7 +83,7 @@ void RunningRests::State::look_at(const RestBlocks& looked_at,
   if (run.first > 0) run.first += looked_at.window;
   if (run.first >= run.end) return;
   double count = 0.0;
-  for (std::size_t k = run.first; k < run.end; ++k) count += looked_at.at[k].count;
+  for (std::size_t k = run.first; k < run.end; ++k) count += looked_at.count[k];
   if (count < static_cast<double>(recent.shortest())) return;
   const bool goes_on =
       was_resting && runs.back().first == 0 && state.since_s < recent.spans().front().start_s;
@@ -96,7 +95,7 @@ void RunningRests::State::rest_over(const RestBlocks& looked_at, const RestRun& 
   PerAxis squares{};
   double free = 0.0;
   for (std::size_t k = run.first; k < run.end; ++k) {
-    const RestBlock& block = looked_at.at[k];
+    const RestBlock block = looked_at.at(k);
     if (block.count < 2.0) continue;
     for (std::size_t a = 0; a < axis_count; ++a) squares[a] += block.squares[a];
     free += block.count - 1.0;
@@ -145,7 +144,7 @@ std::vector<AllanLevel> RunningRests::levels(std::size_t axis) const {
   double steps = 0.0, count = 0.0;
   DyadicAllan ladder;
   for (std::size_t k = s.rest.first; k < s.rest.end; ++k) {
-    const RestBlock& block = blocks.at[k];
+    const RestBlock block = blocks.at(k);
     if (blocks.missing(k) || block.count < 2.0) continue;
     steps += 0.5 * block.steps[axis];
     count += block.count - 1.0;

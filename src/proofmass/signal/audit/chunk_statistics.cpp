@@ -123,6 +123,22 @@ bool has_repeats(View<double> values) {
 }
 
 PM_VECTOR_CLONES
+bool steps_are_fine_or_reversed(View<double> values, double least) {
+  const double* x = values.data();
+  Lanes found{};
+  std::size_t k = 2;
+  for (; k + lanes <= values.size(); k += lanes)
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const double* here = x + k + lane;
+      found[lane] += std::abs(here[0] - here[-1]) < least ? 1.0 : 0.0;
+      found[lane] += here[0] == here[-2] ? 1.0 : 0.0;
+    }
+  for (; k < values.size(); ++k)
+    if (std::abs(x[k] - x[k - 1]) < least || x[k] == x[k - 2]) return true;
+  return total(found) > 0.0;
+}
+
+PM_VECTOR_CLONES
 std::size_t count_below(View<double> values, double sign, double bound) {
   const double* x = values.data();
   const std::size_t n = values.size();

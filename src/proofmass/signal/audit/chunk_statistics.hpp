@@ -47,6 +47,10 @@ struct DepartureSums {
 /// True if any value equals the previous one.
 [[nodiscard]] bool has_repeats(View<double> values);
 
+/// True if any value from the third on differs by less than `least` from the previous one or equals
+/// the one before that.
+[[nodiscard]] bool steps_are_fine_or_reversed(View<double> values, double least);
+
 /// Number of values for which sign · x is below the bound.
 [[nodiscard]] std::size_t count_below(View<double> values, double sign, double bound);
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
+#include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/signal/audit/range_limit.hpp"
 #include "proofmass/signal/channel_audit.hpp"
@@ -77,10 +79,16 @@ Clipping clipping_of(RangeLimit::Kind kind) {
 
 /// Limits that are not a single value; if the two sides differ, the clearer one is reported.
 void judge_crests(ChannelAudit& audit, const ValueExcerpts& excerpts) {
-  std::vector<double> series = excerpts.values();
-  const auto high = find_upper_limit(series);
-  for (double& value : series) value = -value;
-  const auto low = find_upper_limit(series);
+  const std::vector<double> series = excerpts.values();
+  std::optional<RangeLimit> high, low;
+  constexpr std::size_t passes = 4;  // of a search for a limit, on average
+  run_tasks(passes * series.size(), {[&] { high = find_upper_limit(series); },
+                                     [&] {
+                                       std::vector<double> turned(series.size());
+                                       std::ranges::transform(series, turned.begin(),
+                                                              std::negate<>());
+                                       low = find_upper_limit(turned);
+                                     }});
   if (!high && !low) return;
   const auto kind = std::min(high ? high->kind : RangeLimit::Kind::flat,
                              low ? low->kind : RangeLimit::Kind::flat);
@@ -99,6 +107,17 @@ void judge_crests(ChannelAudit& audit, const ValueExcerpts& excerpts) {
       static_cast<std::size_t>(std::round(static_cast<double>(samples) * excerpts.share()));
 }
 
+void take_plausible(View<double> values, std::vector<double>& out) {
+  // Branch-free: odd values are unpredictable.
+  out.resize(values.size());
+  std::size_t count = 0;
+  for (const double value : values) {
+    out[count] = value;
+    count += is_plausible(value) ? 1 : 0;
+  }
+  out.resize(count);
+}
+
 }  // namespace
 
 RunningChannel::RunningChannel(std::size_t sample_capacity)
@@ -108,32 +127,35 @@ RunningChannel::RunningChannel(std::size_t sample_capacity)
       excerpts_(sample_capacity / 2) {}
 
 void RunningChannel::add(View<double> values, const SampleTimes& times) {
-  last_ = chunk_statistics(values);
-  if (!last_.plausible) return add_odd(values, times);
-  add_plausible(values);
+  const ChunkStatistics figures = chunk_statistics(values);
+  if (!figures.plausible) return add_odd(values, times);
+  add_plausible(values, figures);
   excerpts_.add(values);
-  runs_.add(values, times.first, times, last_.min, last_.max);
+  runs_.add(values, times.first, times, figures.min, figures.max);
 }
 
-// All statistics except the runs and the excerpts.
-void RunningChannel::add_plausible(View<double> values) {
-  add_chunk(moments_, last_, values);
+void RunningChannel::add_to_tails(View<double> values) {
+  ChunkStatistics figures = chunk_statistics(values);
+  if (!figures.plausible) {
+    take_plausible(values, of_tails_);
+    if (of_tails_.empty()) return;
+    values = of_tails_;
+    figures = chunk_statistics(values);
+  }
+  lowest_.add(values, figures.min);
+  highest_.add(values, figures.max);
+}
+
+void RunningChannel::add_plausible(View<double> values, const ChunkStatistics& figures) {
+  add_chunk(moments_, figures, values);
   sample_.add(values);
-  lowest_.add(values, last_.min);
-  highest_.add(values, last_.max);
 }
 
 void RunningChannel::add_odd(View<double> values, const SampleTimes& times) {
-  // Branch-free: odd values are unpredictable.
-  plausible_.resize(values.size());
-  std::size_t count = 0;
-  for (const double value : values) {
-    plausible_[count] = value;
-    count += is_plausible(value) ? 1 : 0;
-  }
-  plausible_.resize(count);
-  last_ = plausible_.empty() ? ChunkStatistics{.min = 1.0} : chunk_statistics(plausible_);
-  if (!plausible_.empty()) add_plausible(plausible_);
+  take_plausible(values, plausible_);
+  const ChunkStatistics figures =
+      plausible_.empty() ? ChunkStatistics{.min = 1.0} : chunk_statistics(plausible_);
+  if (!plausible_.empty()) add_plausible(plausible_, figures);
   plausible_.resize(values.size());
   std::ranges::transform(values, plausible_.begin(), plausible_or_nan);
   excerpts_.add(plausible_);
@@ -145,7 +167,8 @@ void RunningChannel::add_odd(View<double> values, const SampleTimes& times) {
     }
     const std::size_t from = k;
     while (k + 1 < values.size() && is_plausible(values[k + 1])) ++k;
-    runs_.add(values.subspan(from, k + 1 - from), times.first + from, times, last_.min, last_.max);
+    runs_.add(values.subspan(from, k + 1 - from), times.first + from, times, figures.min,
+              figures.max);
   }
 }
 

@@ -34,11 +34,11 @@ class RunningChannel {
   /// Adds the values of samples times.first, times.first + 1, …
   void add(View<double> values, const SampleTimes& times);
 
+  /// Adds the same values to the tails. Shares no data with add(), so that both can run at once.
+  void add_to_tails(View<double> values);
+
   /// Call once. `channel` gives the name and the unit.
   [[nodiscard]] ChannelAudit finish(const Channel& channel);
-
-  /// True if the last chunk may contain a zero.
-  [[nodiscard]] bool has_zero() const { return last_.min <= 0.0 && last_.max >= 0.0; }
 
   [[nodiscard]] const OddValues& nan() const { return nan_; }
   [[nodiscard]] const OddValues& infinite() const { return infinite_; }
@@ -46,20 +46,19 @@ class RunningChannel {
   [[nodiscard]] const OddValues& denormal() const { return denormal_; }
 
  private:
-  void add_plausible(View<double> values);
+  void add_plausible(View<double> values, const ChunkStatistics& figures);
   void add_odd(View<double> values, const SampleTimes& times);
   void take_odd(double value, Place place);
   void judge_range(ChannelAudit& audit) const;
   void judge_rails(ChannelAudit& audit) const;
 
   Moments moments_;
-  ChunkStatistics last_;
   StuckValues runs_;
   Subsample sample_;
   ClippingTail lowest_, highest_;
   ValueExcerpts excerpts_;
   OddValues nan_, infinite_, absurd_, denormal_;
-  std::vector<double> plausible_;  ///< the plausible values of a chunk that contains others
+  std::vector<double> plausible_, of_tails_;  ///< plausible values of a chunk that contains others
 };
 
 }  // namespace proofmass::signal

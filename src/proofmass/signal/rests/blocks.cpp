@@ -14,14 +14,14 @@ namespace {
 using Axes = View<View<double>>;
 
 bool is_complete(const RestBlocks& blocks, std::size_t first, std::size_t end) {
-  return std::all_of(blocks.there.data() + first, blocks.there.data() + end,
-                     [](unsigned char there) { return there != 0; });
+  return blocks.there.empty() || std::all_of(blocks.there.data() + first, blocks.there.data() + end,
+                                             [](unsigned char there) { return there != 0; });
 }
 
 /// The samples of block k except `left_out`.
 RestBlock block_of(Axes axes, const RestBlocks& blocks, std::size_t k, std::size_t left_out) {
   RestBlock block;
-  const auto is_used = [&](std::size_t s) { return s != left_out && blocks.there[s]; };
+  const auto is_used = [&](std::size_t s) { return s != left_out && blocks.is_there(s); };
   const std::size_t end = blocks.end_sample(k);
   std::size_t first = blocks.first_sample(k);
   while (first < end && !is_used(first)) ++first;
@@ -57,21 +57,93 @@ RestBlock block_of(Axes axes, const RestBlocks& blocks, std::size_t k, std::size
   return block;
 }
 
-void look_at_resolution(Axes axes, std::size_t window, RestBlocks& blocks) {
-  for (std::size_t a = 0; a < axes.size(); ++a) {
-    LsbDetector seeker(window);
-    double largest = 0.0;
-    for (std::size_t k = 0; k < blocks.samples; ++k) {
-      if (!blocks.there[k]) continue;
-      seeker.add(k, axes[a][k]);
-      largest = std::max(largest, std::abs(axes[a][k]));
+// Marks the implausible samples from `first` to `end` − 1. Returns whether there are none.
+bool mark_missing(Axes axes, std::size_t first, std::size_t end, RestBlocks& blocks) {
+  bool complete = true;
+  for (const View<double> axis : axes)
+    for_each_implausible(axis.subspan(first, end - first), [&](std::size_t k) {
+      if (blocks.there.empty()) blocks.there.assign(blocks.samples, 1);
+      blocks.there[first + k] = 0;
+      complete = false;
+    });
+  return complete;
+}
+
+// Determines the quantisation steps and the largest magnitudes.
+class Resolution {
+ public:
+  Resolution(std::size_t axes, std::size_t window) : seekers_(axes, LsbDetector(window)) {}
+
+  // Adds the samples from `first` to `end` − 1 that are not missing.
+  void add(
+      Axes axes, const RestBlocks& blocks, std::size_t first, std::size_t end, bool is_complete) {
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      const View<double> values = axes[a].subspan(first, end - first);
+      if (is_complete && !values.empty()) {
+        seekers_[a].add(first, values);
+        const ChunkStatistics figures = chunk_statistics(values);
+        largest_[a] = std::max({largest_[a], -figures.min, figures.max});
+        continue;
+      }
+      for (std::size_t k = first; k < end; ++k) {
+        if (!blocks.is_there(k)) continue;
+        seekers_[a].add(k, axes[a][k]);
+        largest_[a] = std::max(largest_[a], std::abs(axes[a][k]));
+      }
     }
-    blocks.quantum[a] = seeker.quantum();
-    blocks.variance_floor[a] = variance_floor(seeker.quantum(), largest);
+  }
+
+  void finish(RestBlocks& blocks) const {
+    for (std::size_t a = 0; a < seekers_.size(); ++a) {
+      blocks.quantum[a] = seekers_[a].quantum();
+      blocks.variance_floor[a] = variance_floor(blocks.quantum[a], largest_[a]);
+    }
+  }
+
+ private:
+  std::vector<LsbDetector> seekers_;
+  PerAxis largest_{};
+};
+
+}  // namespace
+
+RestBlock RestBlocks::at(std::size_t k) const {
+  RestBlock out{.count = count[k], .cleaned = cleaned[k] != 0};
+  for (std::size_t a = 0; a < axes; ++a) {
+    out.mean[a] = mean[a][k];
+    out.squares[a] = squares[a][k];
+    out.steps[a] = steps[a][k];
+  }
+  return out;
+}
+
+void RestBlocks::set(std::size_t k, const RestBlock& to) {
+  count[k] = to.count;
+  cleaned[k] = to.cleaned ? 1 : 0;
+  for (std::size_t a = 0; a < axes; ++a) {
+    mean[a][k] = to.mean[a];
+    squares[a][k] = to.squares[a];
+    steps[a][k] = to.steps[a];
   }
 }
 
-}  // namespace
+void RestBlocks::resize(std::size_t size) {
+  count.resize(size);
+  cleaned.resize(size);
+  for (AxisColumns* columns : {&mean, &squares, &steps})
+    for (std::size_t a = 0; a < axes; ++a) (*columns)[a].resize(size);
+}
+
+void RestBlocks::drop_first() {
+  count.erase(count.begin());
+  cleaned.erase(cleaned.begin());
+  for (AxisColumns* columns : {&mean, &squares, &steps})
+    for (std::size_t a = 0; a < axes; ++a) (*columns)[a].erase((*columns)[a].begin());
+}
+
+std::size_t RestBlocks::samples_there() const {
+  return there.empty() ? samples : static_cast<std::size_t>(std::ranges::count(there, 1));
+}
 
 double variance_floor(double quantum, double largest) {
   const double rounding = 1e-14 * largest;
@@ -92,15 +164,21 @@ RestBlocks no_blocks(std::size_t axes, std::size_t window) {
 RestBlocks blocks_of(Axes axes, std::size_t window) {
   RestBlocks blocks = no_blocks(axes.size(), window);
   blocks.samples = axes[0].size();
-  blocks.there.assign(blocks.samples, 1);
-  for (const View<double> axis : axes) {
-    PM_EXPECTS(axis.size() == blocks.samples);
-    for_each_implausible(axis, [&](std::size_t k) { blocks.there[k] = 0; });
-  }
-  blocks.at.resize(blocks.samples / blocks.block);
-  for (std::size_t k = 0; k < blocks.at.size(); ++k)
-    blocks.at[k] = block_of(axes, blocks, k, blocks.samples);
-  look_at_resolution(axes, window, blocks);
+  for (const View<double> axis : axes) PM_EXPECTS(axis.size() == blocks.samples);
+  blocks.resize(blocks.samples / blocks.block);
+  Resolution resolution(axes.size(), window);
+  // Short enough that the samples stay in the cache from one pass to the next.
+  const std::size_t piece = std::max<std::size_t>(1, 2048 / blocks.block);
+  std::size_t k = 0;
+  do {
+    const std::size_t next = std::min(k + piece, blocks.size());
+    const std::size_t first = blocks.first_sample(k);
+    const std::size_t end = next == blocks.size() ? blocks.samples : blocks.first_sample(next);
+    const bool is_complete = mark_missing(axes, first, end, blocks);
+    for (; k < next; ++k) blocks.set(k, block_of(axes, blocks, k, blocks.samples));
+    resolution.add(axes, blocks, first, end, is_complete);
+  } while (k < blocks.size());
+  resolution.finish(blocks);
   return blocks;
 }
 
@@ -116,7 +194,7 @@ RestBlock without_outlier(Axes axes,
   for (std::size_t a = 0; a < axes.size(); ++a) {
     values.clear();
     for (std::size_t s = first; s < end; ++s)
-      if (blocks.there[s]) values.push_back(axes[a][s]);
+      if (blocks.is_there(s)) values.push_back(axes[a][s]);
     if (values.empty()) return {};
     const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::ranges::nth_element(values, half);
@@ -125,7 +203,7 @@ RestBlock without_outlier(Axes axes,
   std::size_t farthest = first;
   double largest = -1.0;
   for (std::size_t s = first; s < end; ++s) {
-    if (!blocks.there[s]) continue;
+    if (!blocks.is_there(s)) continue;
     double distance = 0.0;
     for (std::size_t a = 0; a < axes.size(); ++a)
       distance += (axes[a][s] - middle[a]) * (axes[a][s] - middle[a]) / variance[a];
@@ -141,25 +219,25 @@ RestBlock without_outlier(Axes axes,
 RestBlock joined(const RestBlocks& blocks, std::size_t k, std::size_t count) {
   RestBlock all;
   for (std::size_t b = k; b < k + count; ++b) {
-    const RestBlock& next = blocks.at[b];
-    if (next.count == 0.0) continue;
-    const double total = all.count + next.count;
+    const double more = blocks.count[b];
+    if (more == 0.0) continue;
+    const double total = all.count + more;
     for (std::size_t a = 0; a < blocks.axes; ++a) {
-      const double step = next.mean[a] - all.mean[a];
-      all.squares[a] += next.squares[a] + step * step * all.count * next.count / total;
-      all.mean[a] += step * next.count / total;
+      const double step = blocks.mean[a][b] - all.mean[a];
+      all.squares[a] += blocks.squares[a][b] + step * step * all.count * more / total;
+      all.mean[a] += step * more / total;
     }
     all.count = total;
   }
   return all;
 }
 
-BlockSums::BlockSums(const RestBlocks& blocks) : count(blocks.at.size()) {
+BlockSums::BlockSums(const RestBlocks& blocks) : count(blocks.size()) {
   for (std::size_t k = 0; k < count.size(); ++k)
-    count[k] = blocks.missing(k) ? 0.0 : blocks.at[k].count;
+    count[k] = blocks.missing(k) ? 0.0 : blocks.count[k];
   for (std::size_t a = 0; a < blocks.axes; ++a) {
     sum[a].resize(count.size());
-    for (std::size_t k = 0; k < count.size(); ++k) sum[a][k] = count[k] * blocks.at[k].mean[a];
+    for (std::size_t k = 0; k < count.size(); ++k) sum[a][k] = count[k] * blocks.mean[a][k];
   }
 }
 

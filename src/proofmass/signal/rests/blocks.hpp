@@ -21,22 +21,36 @@ struct RestBlock {
   bool cleaned = false;  ///< one outlier was removed
 };
 
+/// One column for each member of RestBlock: most steps of the search read two of them.
 struct RestBlocks {
+  using AxisColumns = std::array<std::vector<double>, most_axes>;
+
   std::size_t samples = 0;  ///< length of the series, in samples
   std::size_t axes = 0;
   std::size_t block = 0;   ///< samples per block; the last block may hold up to twice as many
   std::size_t window = 0;  ///< blocks per variance window
-  std::vector<RestBlock> at;
-  std::vector<unsigned char> there;  ///< per sample: true if every axis has a measurement
-  PerAxis quantum{};                 ///< quantisation step, 0 if none is visible
-  PerAxis variance_floor{};          ///< a smaller variance is due to rounding
+  std::vector<double> count;
+  AxisColumns mean, squares, steps;
+  std::vector<unsigned char> cleaned;
+  /// Per sample: true if every axis has a measurement. Empty if that is true of all.
+  std::vector<unsigned char> there;
+  PerAxis quantum{};         ///< quantisation step, 0 if none is visible
+  PerAxis variance_floor{};  ///< a smaller variance is due to rounding
 
+  [[nodiscard]] std::size_t size() const { return count.size(); }
+  [[nodiscard]] RestBlock at(std::size_t k) const;
+  void set(std::size_t k, const RestBlock& to);
+  void resize(std::size_t size);
+  void drop_first();
+
+  [[nodiscard]] bool is_there(std::size_t sample) const { return there.empty() || there[sample]; }
+  [[nodiscard]] std::size_t samples_there() const;
   [[nodiscard]] std::size_t first_sample(std::size_t k) const { return k * block; }
   [[nodiscard]] std::size_t end_sample(std::size_t k) const {
-    return k + 1 == at.size() ? samples : (k + 1) * block;
+    return k + 1 == size() ? samples : (k + 1) * block;
   }
   [[nodiscard]] bool missing(std::size_t k) const {
-    return 2.0 * at[k].count < static_cast<double>(block);
+    return 2.0 * count[k] < static_cast<double>(block);
   }
 };
 

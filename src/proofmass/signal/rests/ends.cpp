@@ -13,9 +13,9 @@ constexpr double level = 0.9995;
 
 void trim_edges(const RestBlocks& blocks, RestRun& run) {
   if (run.first > 0) ++run.first;
-  if (run.end < blocks.at.size()) --run.end;
+  if (run.end < blocks.size()) --run.end;
   // An outlier at the very end is motion, or a sample from before the rest.
-  const auto is_bad = [&](std::size_t k) { return blocks.at[k].cleaned || blocks.missing(k); };
+  const auto is_bad = [&](std::size_t k) { return blocks.cleaned[k] || blocks.missing(k); };
   while (run.first < run.end && is_bad(run.first)) ++run.first;
   while (run.first < run.end && is_bad(run.end - 1)) --run.end;
 }
@@ -106,8 +106,8 @@ bool moves(const RestBlocks& blocks,
       const auto first = static_cast<double>(blocks.first_sample(k));
       const auto last = static_cast<double>(blocks.end_sample(k));
       const double level = 0.5 * (before.mean[a] + after.mean[a]);
-      if (blocks.at[k].count > 0.0)
-        moved += (blocks.at[k].mean[a] - level) * (last - first) * (end - 0.5 * (first + last));
+      if (blocks.count[k] > 0.0)
+        moved += (blocks.mean[a][k] - level) * (last - first) * (end - 0.5 * (first + last));
     }
     // White noise over n samples, plus the error of the level itself, times n²/2.
     const double of_level =

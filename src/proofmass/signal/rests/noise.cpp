@@ -30,17 +30,17 @@ void set_levels(std::size_t axes, std::vector<Window>& windows) {
     std::ranges::transform(windows, logs.begin(),
                            [a](const Window& w) { return 0.5 * std::log(w.variance[a]); });
     const double quiet = quantile(logs, 0.05).value_or(0.0);
-    for (Window& window : windows)
-      window.level = std::max(window.level, 0.5 * std::log(window.variance[a]) - quiet);
+    for (std::size_t k = 0; k < windows.size(); ++k)
+      windows[k].level = std::max(windows[k].level, logs[k] - quiet);
   }
 }
 
 std::vector<Window> windows_of(const RestBlocks& blocks) {
   std::vector<Window> windows;
-  if (blocks.at.size() < blocks.window) return windows;
-  windows.reserve(blocks.at.size());
+  if (blocks.size() < blocks.window) return windows;
+  windows.reserve(blocks.size());
   const double enough = 0.75 * static_cast<double>(blocks.window * blocks.block);
-  for (std::size_t k = 0; k + blocks.window <= blocks.at.size(); ++k) {
+  for (std::size_t k = 0; k + blocks.window <= blocks.size(); ++k) {
     const RestBlock all = joined(blocks, k, blocks.window);
     if (all.count < enough) continue;
     Window window{.first = k};
@@ -111,18 +111,18 @@ RestNoise noise_of(const RestBlocks& blocks, Set set) {
         mean_by_median(values, static_cast<double>(blocks.window * blocks.block - 1));
     const double quantum = blocks.quantum[a] * blocks.quantum[a];
     noise.quantum_variance[a] = noise.window_variance[a] < 0.25 * quantum ? 0.09 * quantum : 0.0;
-    const auto of_blocks = [&](PerAxis RestBlock::* sums, double share) {
+    const auto of_blocks = [&](const std::vector<double>& sums, double share) {
       std::ranges::transform(some, values.begin(), [&](const Window& window) {
-        const RestBlock& block = blocks.at[window.first + blocks.window / 2];
-        return block.count > 1.0 ? share * (block.*sums)[a] / (block.count - 1.0) : 0.0;
+        const std::size_t k = window.first + blocks.window / 2;
+        return blocks.count[k] > 1.0 ? share * sums[k] / (blocks.count[k] - 1.0) : 0.0;
       });
       return std::max(mean_by_median(values, static_cast<double>(blocks.block - 1)),
                       blocks.variance_floor[a]);
     };
-    noise.block_variance[a] = of_blocks(&RestBlock::squares, 1.0);
-    noise.step_variance[a] = of_blocks(&RestBlock::steps, 0.5);
+    noise.block_variance[a] = of_blocks(blocks.squares[a], 1.0);
+    noise.step_variance[a] = of_blocks(blocks.steps[a], 0.5);
   }
-  std::vector<bool> in_set(blocks.at.size(), false);
+  std::vector<bool> in_set(blocks.size(), false);
   for (const Window& window : set) in_set[window.first] = true;
   for (BlockSums sums(blocks); sums.width <= blocks.window; sums.widen()) {
     const bool compared = add_allan_variance(blocks, sums, some, in_set, noise);
@@ -168,8 +168,8 @@ std::vector<Window> calm_part(const RestBlocks& blocks, Set set) {
       double squares = 0.0;
       double free = 0.0;
       for (std::size_t b = window.first; b < window.first + blocks.window; ++b) {
-        squares += blocks.at[b].squares[a];
-        free += std::max(0.0, blocks.at[b].count - 1.0);
+        squares += blocks.squares[a][b];
+        free += std::max(0.0, blocks.count[b] - 1.0);
       }
       const double variance = std::max(squares / free, blocks.variance_floor[a]);
       const double step = one.mean[a] - other.mean[a];
@@ -222,10 +222,11 @@ double loudness(const RestBlocks& blocks,
   double sum = 0.0;
   double free = 0.0;
   for (std::size_t b = k; b < k + count; ++b) {
-    const RestBlock& block = blocks.at[b];
-    if (block.count < 2.0) continue;
-    for (std::size_t a = 0; a < blocks.axes; ++a) sum += block.squares[a] / noise.block_variance[a];
-    free += static_cast<double>(blocks.axes) * (block.count - 1.0);
+    const double there = blocks.count[b];
+    if (there < 2.0) continue;
+    for (std::size_t a = 0; a < blocks.axes; ++a)
+      sum += blocks.squares[a][b] / noise.block_variance[a];
+    free += static_cast<double>(blocks.axes) * (there - 1.0);
   }
   return free > 0.0 ? sum / free : 0.0;
 }
@@ -237,9 +238,9 @@ PerAxis noise_ratio(const RestBlocks& blocks,
   PerAxis squares{};
   double free = 0.0;
   for (std::size_t b = k; b < k + count; ++b) {
-    if (blocks.at[b].count < 2.0) continue;
-    for (std::size_t a = 0; a < blocks.axes; ++a) squares[a] += blocks.at[b].squares[a];
-    free += blocks.at[b].count - 1.0;
+    if (blocks.count[b] < 2.0) continue;
+    for (std::size_t a = 0; a < blocks.axes; ++a) squares[a] += blocks.squares[a][b];
+    free += blocks.count[b] - 1.0;
   }
   PerAxis ratio{};
   for (std::size_t a = 0; a < blocks.axes; ++a)

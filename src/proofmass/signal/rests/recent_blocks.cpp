@@ -79,24 +79,25 @@ void RecentBlocks::close(const std::optional<RestNoise>& noise) {
   const std::array<View<double>, most_axes> open{open_[0], open_[1], open_[2]};
   const View<View<double>> axes = View<View<double>>(open).first(axes_);
   const RestBlocks one = blocks_of(axes, 8 * blocks_.block);
-  push(one.at[0], open_span_);
-  const std::size_t last = blocks_.at.size() - 1;
+  push(one.at(0), open_span_);
+  const std::size_t last = blocks_.size() - 1;
   if (noise && !blocks_.missing(last)) {
     const QuietTest test(blocks_);
     if (!test.passes(blocks_, *noise, last)) {
-      blocks_.at[last] = without_outlier(axes, one, 0, noise->block_variance);
-      if (!test.passes(blocks_, *noise, last)) blocks_.at[last] = one.at[0];
+      blocks_.set(last, without_outlier(axes, one, 0, noise->block_variance));
+      if (!test.passes(blocks_, *noise, last)) blocks_.set(last, one.at(0));
     }
   }
   for (std::vector<double>& axis : open_) axis.clear();
 }
 
 void RecentBlocks::push(const RestBlock& block, Span span) {
-  if (blocks_.at.size() == most) {
-    blocks_.at.erase(blocks_.at.begin());
+  if (blocks_.size() == most) {
+    blocks_.drop_first();
     spans_.erase(spans_.begin());
   }
-  blocks_.at.push_back(block);
+  blocks_.resize(blocks_.size() + 1);
+  blocks_.set(blocks_.size() - 1, block);
   spans_.push_back(span);
   for (std::size_t a = 0; a < axes_; ++a) {
     blocks_.quantum[a] = seekers_[a].quantum();

@@ -11,7 +11,7 @@ namespace {
 
 /// The bound that χ² over its degrees of freedom exceeds somewhere in one recording in a hundred.
 double bound_of(const RestBlocks& blocks, double dof) {
-  const double tests = 10.0 * static_cast<double>(blocks.at.size()) + 1.0;
+  const double tests = 10.0 * static_cast<double>(blocks.size()) + 1.0;
   return chi_square_quantile(1.0 - 1e-2 / tests, dof) / dof;
 }
 
@@ -67,17 +67,43 @@ bool can_compare(const RestBlocks& blocks, const BlockSums& sums, std::size_t bo
   return sums.count[boundary - sums.width] >= enough && sums.count[boundary] >= enough;
 }
 
+/// Runs with their noise_ratio.
+struct RatedRuns {
+  std::vector<RestRun> runs;
+  std::vector<PerAxis> ratios;
+
+  RatedRuns(const RestBlocks& blocks, const RestNoise& noise, std::vector<RestRun> first) {
+    replace(blocks, noise, first);
+  }
+
+  /// Takes `next`, whose runs are in order, as are those now. The ratios of runs that remain as
+  /// they are remain too.
+  void replace(const RestBlocks& blocks, const RestNoise& noise, std::vector<RestRun>& next) {
+    std::vector<PerAxis> next_ratios;
+    next_ratios.reserve(next.size());
+    std::size_t k = 0;
+    for (const RestRun& run : next) {
+      while (k < ratios.size() && runs[k].first < run.first) ++k;
+      const bool same = k < ratios.size() && runs[k].first == run.first && runs[k].end == run.end;
+      next_ratios.push_back(same ? ratios[k] : noise_ratio(blocks, noise, run.first, run.size()));
+    }
+    std::swap(runs, next);
+    ratios = std::move(next_ratios);
+  }
+};
+
 /// The Allan variance at the width of `sums`, from the runs.
 PerAxis allan_variance_of(const RestBlocks& blocks,
                           const RestNoise& noise,
                           const BlockSums& sums,
-                          const std::vector<RestRun>& runs) {
+                          const RatedRuns& rated) {
   std::array<std::vector<double>, most_axes> values;
   double independent = 0.0;
   const std::size_t stride = std::max<std::size_t>(1, sums.width / 4);
-  for (const RestRun& run : runs) {
+  for (std::size_t r = 0; r < rated.runs.size(); ++r) {
+    const RestRun& run = rated.runs[r];
     if (run.size() < 2 * sums.width) continue;
-    const PerAxis ratio = noise_ratio(blocks, noise, run.first, run.size());
+    const PerAxis& ratio = rated.ratios[r];
     for (std::size_t k = run.first + sums.width; k + sums.width <= run.end; k += stride) {
       if (!can_compare(blocks, sums, k)) continue;
       independent += static_cast<double>(stride) / static_cast<double>(sums.width);
@@ -126,11 +152,11 @@ QuietTest::QuietTest(const RestBlocks& blocks)
 
 void clean_outliers(View<View<double>> axes, RestBlocks& blocks, const RestNoise& noise) {
   const QuietTest test(blocks);
-  for (std::size_t k = 0; k < blocks.at.size(); ++k) {
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
     if (blocks.missing(k) || test.passes(blocks, noise, k)) continue;
-    const RestBlock as_it_was = blocks.at[k];
-    blocks.at[k] = without_outlier(axes, blocks, k, noise.block_variance);
-    if (!test.passes(blocks, noise, k)) blocks.at[k] = as_it_was;
+    const RestBlock as_it_was = blocks.at(k);
+    blocks.set(k, without_outlier(axes, blocks, k, noise.block_variance));
+    if (!test.passes(blocks, noise, k)) blocks.set(k, as_it_was);
   }
 }
 
@@ -140,19 +166,19 @@ void drop_stuck(RestBlocks& blocks, const RestNoise& noise) {
     noisy = noisy || noise.window_variance[a] > std::max(blocks.quantum[a] * blocks.quantum[a],
                                                          4.0 * blocks.variance_floor[a]);
   if (!noisy) return;
-  const auto is_constant = [&](const RestBlock& block) {
+  const auto is_constant = [&](std::size_t k) {
     for (std::size_t a = 0; a < blocks.axes; ++a)
-      if (block.squares[a] > 0.0) return false;
-    return block.count > 0.0;
+      if (blocks.squares[a][k] > 0.0) return false;
+    return blocks.count[k] > 0.0;
   };
   std::size_t run = 0;
-  for (std::size_t k = 0; k <= blocks.at.size(); ++k) {
-    if (k < blocks.at.size() && is_constant(blocks.at[k])) {
+  for (std::size_t k = 0; k <= blocks.size(); ++k) {
+    if (k < blocks.size() && is_constant(k)) {
       ++run;
       continue;
     }
     if (run >= blocks.window)
-      for (std::size_t b = k - run; b < k; ++b) blocks.at[b].count = 0.0;
+      for (std::size_t b = k - run; b < k; ++b) blocks.count[b] = 0.0;
     run = 0;
   }
 }
@@ -161,7 +187,7 @@ std::vector<RestRun> quiet_runs(const RestBlocks& blocks, const RestNoise& noise
   const QuietTest test(blocks);
   std::vector<RestRun> runs;
   add_runs(
-      blocks, {0, blocks.at.size()}, [&](std::size_t k) { return test.passes(blocks, noise, k); },
+      blocks, {0, blocks.size()}, [&](std::size_t k) { return test.passes(blocks, noise, k); },
       runs);
   std::vector<RestRun> quiet;
   quiet.reserve(runs.size());
@@ -174,26 +200,28 @@ std::vector<RestRun> still_runs(const RestBlocks& blocks,
                                 std::vector<RestRun> runs) {
   const auto axes = static_cast<double>(blocks.axes);
   const double slack = 2.25 * axes * bound_of(blocks, axes);
+  RatedRuns rated(blocks, noise, std::move(runs));
   std::vector<RestRun> parts;
   BlockSums sums(blocks);
   for (std::size_t scale = 0; sums.width <= 16 * blocks.window; ++scale, sums.widen()) {
     if (sums.count.size() <= sums.width) break;
     if (scale == noise.allan_variance.size())
-      noise.allan_variance.push_back(allan_variance_of(blocks, noise, sums, runs));
+      noise.allan_variance.push_back(allan_variance_of(blocks, noise, sums, rated));
     parts.clear();
-    for (const RestRun& run : runs) {
+    for (std::size_t r = 0; r < rated.runs.size(); ++r) {
+      const RestRun& run = rated.runs[r];
       if (run.size() < 2 * sums.width) {
         parts.push_back(run);
         continue;
       }
-      PerAxis bound = noise_ratio(blocks, noise, run.first, run.size());
+      PerAxis bound = rated.ratios[r];
       for (std::size_t a = 0; a < blocks.axes; ++a)
         bound[a] *= slack * noise.allan_variance[scale][a];
       add_still_parts(blocks, sums, bound, run, parts);
     }
-    std::swap(runs, parts);
+    rated.replace(blocks, noise, parts);
   }
-  return runs;
+  return std::move(rated.runs);
 }
 
 }  // namespace proofmass::signal
