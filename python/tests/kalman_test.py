@@ -166,3 +166,32 @@ def test_local_level_of_kfas_to_its_digits(recordings):
     assert filtered.mean[:, 0] == pytest.approx(r["att_1"][rows][1:], abs=1e-10)
     assert smoothed.mean[:, 0] == pytest.approx(r["alphahat_1"][rows][1:], abs=1e-10)
     assert smoothed.cov[:, 0, 0] == pytest.approx(r["sumV"][rows][1:], abs=1e-10)
+
+
+# Innovation and its variance, filtered level and slope, smoothed level and slope and the sum of their covariance matrix:
+# results of KFAS, as published with statsmodels (results_exact_initial_local_linear_trend_R.csv), from the third epoch.
+KFAS_TREND = np.array([  # fmt: skip
+    (7.954723, 30.798, 5.60835701068251, -1.75671757198519, 5.21735755213863, -1.74226662021634, 3.60076175360198),
+    (-2.85163943869732, 22.250346743295, 1.25542601501419, -2.91892501722355, 1.59001831093635, -1.1334669932635, 3.44977255623722),
+    (2.66349900220936, 20.3194339439886, 0.73875485281549, -1.94280306025839, 1.01474067368523, -0.682526806142577, 3.40417641537387),
+    (2.2040482074429, 19.7436685873651, 0.777515102727931, -1.16474757404214, 0.951444257134675, -0.406708844795046, 3.41779499251488),
+    (1.38723247131421, 19.5578741215719, 0.858637278359423, -0.681255709019103, 0.962896787447189, -0.249149534786548, 3.51108468447222),
+    (0.82261843065968, 19.4963427441272, 0.915908406318996, -0.395782473854191, 0.978264466604951, -0.166397346715046, 3.81786955269073),
+    (0.479874067535195, 19.4757829323051, 0.950893423903834, -0.229493137203491, 0.986377631822506, -0.132997822505254, 4.85378169531128),
+    (0.278599713299656, 19.4688920344185, 0.971480183483241, -0.132997822505254, 0.971480183483241, -0.132997822505254, 9.22058000043485),
+])
+
+
+def test_local_linear_trend_of_kfas_to_its_digits():
+    """After two epochs of a diffuse start the state is known exactly: S. J. Koopman and J. Durbin (2000)."""
+    z = np.array([10.2394, 4.2039, 6.123123] + 7 * [1.0])
+    noise, level, slope = 1.993, 8.253, 2.334
+    P0 = noise * np.array([[5.0, 3.0], [3.0, 2.0]]) + [[2 * level + slope, level + slope], [level + slope, level + 2 * slope]]
+    model = pm.KalmanModel([[1.0, 1.0], [0.0, 1.0]], [[1.0, 0.0]], np.diag([level, slope]), noise,
+                           x0=[2 * z[1] - z[0], z[1] - z[0]], P0=P0)  # fmt: skip
+    filtered, smoothed = model.filter(z[2:]), model.smooth(z[2:])
+    assert filtered.innovation[:, 0] == pytest.approx(KFAS_TREND[:, 0], abs=1e-10)
+    assert filtered.innovation_cov[:, 0, 0] == pytest.approx(KFAS_TREND[:, 1], abs=1e-10)
+    assert filtered.mean == pytest.approx(KFAS_TREND[:, 2:4], abs=1e-10)
+    assert smoothed.mean == pytest.approx(KFAS_TREND[:, 4:6], abs=1e-10)
+    assert smoothed.cov.sum(axis=(1, 2)) == pytest.approx(KFAS_TREND[:, 6], abs=1e-10)
