@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstring>
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/vector_clones.hpp"
@@ -21,6 +22,12 @@ void keep_rest(const double* K, const double* h, const double* from, double* y, 
 
 }  // namespace
 
+// Without the attribute, the loop becomes a call of memcpy().
+PM_VECTOR_CLONES [[gnu::optimize("no-tree-loop-distribute-patterns")]] void copy_entries(
+    const double* __restrict from, double* __restrict to, int count) {
+  for (int i = 0; i < count; ++i) to[i] = from[i];
+}
+
 PM_VECTOR_CLONES void symmetric_times(const double* __restrict A,
                                       const double* __restrict x,
                                       double* __restrict y,
@@ -37,6 +44,24 @@ PM_VECTOR_CLONES void symmetric_times(const double* __restrict A,
   }
   for (; j < n; ++j)
     for (int i = 0; i < n; ++i) y[i] += A[j * stride + i] * x[j];
+}
+
+PM_VECTOR_CLONES void four_by_four_times(const double* __restrict F,
+                                         const double* __restrict A,
+                                         double* __restrict Y,
+                                         SquareExtent extent) {
+  constexpr std::size_t four = 4 * sizeof(double);
+  using Column [[gnu::vector_size(four)]] = double;
+  Column f0, f1, f2, f3;
+  std::memcpy(&f0, F, four);
+  std::memcpy(&f1, F + 4, four);
+  std::memcpy(&f2, F + 8, four);
+  std::memcpy(&f3, F + 12, four);
+  for (int j = 0; j < extent.n; ++j) {
+    const double* a = A + j * extent.stride;
+    const Column y = ((f0 * a[0] + f1 * a[1]) + f2 * a[2]) + f3 * a[3];
+    std::memcpy(Y + 4 * j, &y, four);
+  }
 }
 
 PM_VECTOR_CLONES void subtract_square(double* __restrict A,

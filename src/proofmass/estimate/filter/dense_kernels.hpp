@@ -10,8 +10,15 @@ struct SquareExtent {
   int stride;
 };
 
+/// to ← from. Faster than memcpy() for some kilobytes where that uses `rep movsb`, which is slow on
+/// virtual machines.
+void copy_entries(const double* from, double* to, int count);
+
 /// y = A x, the first n entries. Cost: n² multiplications.
 void symmetric_times(const double* A, const double* x, double* y, SquareExtent extent);
+
+/// Y = F A, of the first four rows and n columns of A; F and Y have columns of four.
+void four_by_four_times(const double* F, const double* A, double* Y, SquareExtent extent);
 
 /// A ← A − w wᵀ, all n² entries, so that A stays exactly symmetric.
 void subtract_square(double* A, const double* w, SquareExtent extent);

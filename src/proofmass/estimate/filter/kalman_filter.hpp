@@ -102,11 +102,17 @@ struct FilterState {
   int epochs_gated = 0;  ///< consecutive, up to now
 };
 
-/// x̂[k|k−1] from x̂[k−1|k−1].
+/// x̂[k|k−1] from x̂[k−1|k−1]. States from `active` on are held, without covariances.
 template <int N, int D>
-void predict(Gaussian<N>& x, const Transition<N, D>& step) {
+void predict(Gaussian<N>& x, const Transition<N, D>& step, int active = N) {
   x.mean.template head<D>() = step.mean;
-  const Mat<D, N> FP = step.F.lazyProduct(x.cov.template topRows<D>());
+  Mat<D, N> FP;
+  if constexpr (D == 4 && N > 12) {
+    FP.setZero();
+    four_by_four_times(step.F.data(), x.cov.data(), FP.data(), {active, N});
+  } else {
+    FP = step.F.lazyProduct(x.cov.template topRows<D>());
+  }
   // Exactly symmetric: corrections do not reach the antisymmetric part, and F would make it grow.
   const Mat<D, D> FPF = FP.template leftCols<D>() * step.F.transpose();
   x.cov.template topLeftCorner<D, D>() = 0.5 * (FPF + FPF.transpose()) + step.Q;
@@ -124,13 +130,10 @@ void predict(Gaussian<N>& x, const Transition<N, D>& step) {
 /// covariances are zero and are not changed. Source: G. J. Bierman, Factorization Methods for
 /// Discrete Sequential Estimation (1977), section II.
 template <int N>
-[[nodiscard]] Update<N> correct(Gaussian<N>& x,
-                                const Reading<N>& reading,
-                                const Gate& gate,
-                                int active = N) {
+void correct(
+    Gaussian<N>& x, const Reading<N>& reading, const Gate& gate, int active, Update<N>& update) {
   Mat<N> Ph = Mat<N>::Zero();
   symmetric_times(x.cov.data(), reading.h.data(), Ph.data(), {active, N});
-  Update<N> update;
   update.h = reading.h;
   update.innovation = reading.value - reading.predicted;
   const double hPh = reading.h.dot(Ph);
@@ -139,7 +142,7 @@ template <int N>
   update.used = off <= gate.limit;
   if (!update.used) {
     update.gain.setZero();
-    return update;
+    return;
   }
   if (off > gate.huber) update.variance *= off / gate.huber;
   const double weight = 1.0 / update.variance;
@@ -152,6 +155,11 @@ template <int N>
     const Mat<N> w = Ph * std::sqrt(weight);
     subtract_square(x.cov.data(), w.data(), {active, N});
   }
+}
+template <int N>
+[[nodiscard]] Update<N> correct(Gaussian<N>& x, const Reading<N>& reading, const Gate& gate) {
+  Update<N> update;
+  correct(x, reading, gate, N, update);
   return update;
 }
 
@@ -176,10 +184,11 @@ void advance(const Model& model,
              FilterState<Model::states>& state,
              StepOf<Model>& step) {
   constexpr int N = Model::states;
+  const int active = active_states(model);
   if (k > 0) {
     const auto transition = model.transition(state.x.mean, k);
     step.F = transition.F;
-    predict(state.x, transition);
+    predict(state.x, transition, active);
   } else {
     step.F.setIdentity();
   }
@@ -194,13 +203,17 @@ void advance(const Model& model,
   for (int i = 0; i < readings.count; ++i) {
     Reading<N>& reading = readings.rows[static_cast<std::size_t>(i)];
     reading.predicted += reading.h.dot(state.x.mean - linearised_at);
-    const Update<N>& update = step.updates[static_cast<std::size_t>(i)] =
-        correct(state.x, reading, gate, active_states(model));
+    Update<N>& update = step.updates[static_cast<std::size_t>(i)];
+    correct(state.x, reading, gate, active, update);
     any_used = any_used || (update.used && i < readings.count - readings.constraints);
   }
   if (readings.count > 0) state.epochs_gated = any_used ? 0 : state.epochs_gated + 1;
   step.count = readings.count;
-  step.filtered = state.x;
+  step.filtered.mean = state.x.mean;
+  if constexpr (N > 12)
+    copy_entries(state.x.cov.data(), step.filtered.cov.data(), N * N);
+  else
+    step.filtered.cov = state.x.cov;
 }
 
 /// Filters epochs [first, last) from `state` and calls visit(k, step) for each.

@@ -476,22 +476,34 @@ struct WheelModel {
     const double by_w_v = -2.0 * w * rv + sooner * turn_v - fade * turn_u;
     const double by_al_u = -rv - shown * rolling_radius_m * cos_phi;
     const double by_al_v = ru + shown * rolling_radius_m * sin_phi;
-    Mat<states> du = turn_u * now.by_angle + by_w_u * now.by_speed + by_al_u * now.by_accel;
-    Mat<states> dv = turn_v * now.by_angle + by_w_v * now.by_speed + by_al_v * now.by_accel;
-    if (s > 0) {
-      du(wheel::phase) = turn_u;
-      dv(wheel::phase) = turn_v;
-    }
-    du(place) = dv(place + 1) = -lever(0);
-    du(place + 1) = -lever(1);
-    dv(place) = lever(1);
-    // Through scale, skew and bias to the measurement.
+    // Through scale and skew to the measurement.
     const double su = 1.0 + x(at + wheel::scale), sv = 1.0 + x(at + wheel::scale + 1);
     const double skew = x(at + wheel::skew);
     auto& u = out.rows[static_cast<std::size_t>(out.count++)];
     auto& v = out.rows[static_cast<std::size_t>(out.count++)];
-    u.h = su * (du + skew * dv);
-    v.h = sv * (dv + skew * du);
+    u.h.setZero();
+    v.h.setZero();
+    const auto take = [&](const auto& part, const auto& du, const auto& dv) {
+      part(u.h) = su * (du + skew * dv);
+      part(v.h) = sv * (dv + skew * du);
+    };
+    const auto by_motion = [&](const auto& part) {
+      take(part,
+           (turn_u * part(now.by_angle) + by_w_u * part(now.by_speed) +
+            by_al_u * part(now.by_accel)).eval(),
+           (turn_v * part(now.by_angle) + by_w_v * part(now.by_speed) +
+            by_al_v * part(now.by_accel)).eval());
+    };
+    by_motion([](auto& h) { return h.template head<moving>(); });
+    if (with_ripple)
+      by_motion([](auto& h) {
+        return h.template segment<2 * wheel::ripple_orders>(wheel::ripple(Sensors));
+      });
+    if (s > 0)
+      take([](auto& h) { return h.template segment<1>(wheel::phase); }, Mat<1>(turn_u),
+           Mat<1>(turn_v));
+    take([place](auto& h) { return h.template segment<2>(place); }, Mat<2>(-lever(0), -lever(1)),
+         Mat<2>(lever(1), -lever(0)));
     u.h(at + wheel::scale) = fu + skew * fv;
     v.h(at + wheel::scale + 1) = fv + skew * fu;
     u.h(at + wheel::skew) = su * fv;
