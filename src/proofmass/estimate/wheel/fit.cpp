@@ -379,12 +379,12 @@ WheelFit fit_sensors(WheelReadings& readings,
   settled.prior.beginning = coarse_track.beginning;
   spread_variance(coarse, each, readings);
   readings.rolling_radius_m = coarse.rolling_radius_m;
-  readings.shakes = coarse.shakes;
   if (readings.encoder) readings.encoder->more = coarse.encoder->more;
   if (depth == FitDepth::track)
     return smooth_at_places(coarse, settled, coarse_track.path, progress);
   track = spread_track(coarse_track, coarse, readings);
   settle_variance(held_model<S>(readings, settled.noise, track.path), settled.prior, readings);
+  readings.shakes = coarse.shakes;
   WheelFit fit = smooth_at_places(readings, settled, track.path, progress);
   constexpr int count = wheel::standing(S);
   fit.constants_prior_cov =

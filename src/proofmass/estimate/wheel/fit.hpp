@@ -88,6 +88,11 @@ struct WheelTrack {
 [[nodiscard]] WheelTrack find_track(WheelReadings& readings, std::size_t first = 0);
 inline constexpr std::size_t wheel_seeks = 4;
 
+/// Whether gravity is in the direction where the track of a single sensor puts it, in nine tenths
+/// of at least four seconds. A speed that ripples strongly leaves many measurements unexplained on
+/// the right track too.
+[[nodiscard]] bool shows_gravity(const WheelReadings& readings, const WheelTrack& track);
+
 /// An interval in which the predicted angle is less certain than lost_prediction_rad, or in which
 /// the measurements do not show gravity where it is predicted: the first and the last such epoch.
 struct WheelDoubt {

@@ -188,7 +188,7 @@ Result<Single> fit_single(const WheelSensor& sensor,
   double least_lost = 1.0;
   for (std::size_t seek = 0; !options.encoder && seek < wheel_seeks; ++seek) {
     const WheelTrack track = find_track(single.readings, seek);
-    if (track.lost > not_a_wheel) break;
+    if (track.lost > not_a_wheel && !shows_gravity(single.readings, track)) break;
     followed = true;
     least_lost = std::min(least_lost, track.lost);
     single.fit = fit_with_radius(single.readings, track, depth, options);

@@ -488,11 +488,12 @@ struct WheelModel {
       part(v.h) = sv * (dv + skew * du);
     };
     const auto by_motion = [&](const auto& part) {
-      take(part,
-           (turn_u * part(now.by_angle) + by_w_u * part(now.by_speed) +
-            by_al_u * part(now.by_accel)).eval(),
-           (turn_v * part(now.by_angle) + by_w_v * part(now.by_speed) +
-            by_al_v * part(now.by_accel)).eval());
+      take(
+          part,
+          (turn_u * part(now.by_angle) + by_w_u * part(now.by_speed) + by_al_u * part(now.by_accel))
+              .eval(),
+          (turn_v * part(now.by_angle) + by_w_v * part(now.by_speed) + by_al_v * part(now.by_accel))
+              .eval());
     };
     by_motion([](auto& h) { return h.template head<moving>(); });
     if (with_ripple)

@@ -69,6 +69,39 @@ void adapt_ripple(double from_m, double to_m, const WheelReadings& readings, Whe
   }
 }
 
+/// Changes the model's rolling radius, and with it the ripple of the path.
+template <int S>
+void change_rolling_radius(double to_m,
+                           const WheelReadings& readings,
+                           WheelModel<S>& model,
+                           WheelPath& path) {
+  adapt_ripple<S>(model.rolling_radius_m, to_m, readings, path);
+  model.rolling_radius_m = to_m;
+}
+
+/// Whether the recording shows that the wheel does not roll on the radius assumed for a hub that
+/// vibrates. What a strong ripple leaves in the residuals, in proportion to the speed, resembles a
+/// vehicle's vibration; but with a vehicle's radius, the hub's acceleration would be far from what
+/// is measured.
+template <int S>
+bool is_not_a_vehicle(const WheelReadings& readings,
+                      WheelModel<S> model,
+                      const WheelPrior& prior,
+                      const WheelPath& path) {
+  if (!readings.shakes || readings.given_rolling_radius_m || readings.found_rolling_radius_m ||
+      model.rolling_radius_m != 0.0)
+    return false;
+  constexpr std::size_t most_epochs = 20'000;
+  constexpr double clearly = 5.0;  // an epoch; it is below 0.4 for vehicles, about 50 for benches
+  const std::size_t epochs = std::min(model.size(), most_epochs);
+  const double fixed = log_likelihood_of(model, prior_state<S>(prior), 0, epochs);
+  WheelPath rolling = path;
+  model.about = &rolling;
+  change_rolling_radius(readings.rolling_radius_m.value, readings, model, rolling);
+  const double vehicle = log_likelihood_of(model, prior_state<S>(prior), 0, epochs);
+  return fixed - vehicle > clearly * static_cast<double>(epochs);
+}
+
 /// One iteration: the measurements' variance, the motion noise and the sensors' lever arms, all
 /// about the current path, whose ripple is adapted to the rolling radius.
 template <int S>
@@ -86,8 +119,11 @@ Settled<S> settle(WheelReadings& readings,
   if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
     readings.shakes = false;
   assume_rolling_radius(readings);
-  adapt_ripple<S>(model.rolling_radius_m, readings.rolling_radius_m.value, readings, track.path);
-  model.rolling_radius_m = readings.rolling_radius_m.value;
+  if (is_not_a_vehicle(readings, model, prior, track.path)) {
+    readings.shakes = false;
+    assume_rolling_radius(readings);
+  }
+  change_rolling_radius(readings.rolling_radius_m.value, readings, model, track.path);
   const Excerpt<S> excerpt = excerpt_to_tune(model, prior);
   model.noise = tune_noise(model, excerpt, tuning_factor).noise;
   const FoundPlaces likeliest = likeliest_places(model, excerpt, prior, belief);

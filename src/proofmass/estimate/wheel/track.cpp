@@ -3,6 +3,7 @@
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/wheel/doubts.hpp"
 #include "proofmass/estimate/wheel/encoder.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
 
@@ -194,6 +195,26 @@ WheelTrack find_track(WheelReadings& readings, std::size_t first) {
     if (best.lost < 0.3) break;
   }
   return best;
+}
+
+bool shows_gravity(const WheelReadings& readings, const WheelTrack& track) {
+  constexpr double least_s = 4.0, most_doubted = 0.1;
+  const double duration_s = readings.time_s.back() - readings.time_s.front();
+  if (duration_s < least_s) return false;
+  auto model = wheel_model<1>(readings, track.noise);
+  model.with_gyro = false;
+  std::vector<WheelDoubt> doubts;
+  GravityShown<1> gravity(model, readings, doubts);
+  Mat<wheel::states(1)> at;
+  at.tail<wheel::standing(1)>() = track.path.standing;
+  for (std::size_t k = 0; k < model.size(); ++k) {
+    at.head<wheel::moving>() = track.path.moving[k];
+    gravity.add(k, at);
+  }
+  double doubted_s = 0.0;
+  for (const WheelDoubt& doubt : doubts)
+    doubted_s += readings.time_s[doubt.last] - readings.time_s[doubt.first];
+  return doubted_s < most_doubted * duration_s;
 }
 
 }  // namespace proofmass::estimate
