@@ -1,12 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
-#include "proofmass/core/quantity.hpp"
-#include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/filter/smoother.hpp"
+#include "proofmass/estimate/wheel/readings.hpp"
+#include "proofmass/estimate/wheel/states.hpp"
 
 // State-space model of accelerometers on a wheel that turns about a level axle.
 //
@@ -44,46 +44,6 @@
 // is off centre) and 2 (it is warped), d = ±1 its direction and o its offset; without delay.
 namespace proofmass::estimate {
 
-/// Indices of each quantity in the state; those of a sensor are relative to first_of(sensor).
-namespace wheel {
-inline constexpr int angle = 0, speed = 1, accel = 2, jerk = 3, moving = 4;
-/// The angle at the first epoch is kept as a constant state, so that one covariance gives the
-/// variance of the turns since then.
-inline constexpr int start = 4;
-inline constexpr int bias = 0, scale = 2, skew = 4;  ///< of a sensor, relative to first_of
-
-[[nodiscard]] constexpr int first_of(int sensor) {
-  return 5 + 5 * sensor;
-}
-/// Phase of the second sensor against the first.
-inline constexpr int phase = first_of(2);
-inline constexpr int ripple_orders = 4;  ///< (c, s) for each
-[[nodiscard]] constexpr int ripple(int sensors) {
-  return first_of(sensors) + (sensors - 1);
-}
-/// Bias, rad/s, and scale error of each sensor's gyroscope.
-[[nodiscard]] constexpr int gyro(int sensors) {
-  return ripple(sensors) + 2 * ripple_orders;
-}
-/// Offset of the encoder, rad, then (c, s) of each order of its errors.
-inline constexpr int encoder_orders = 2, encoder_states = 1 + 2 * encoder_orders;
-[[nodiscard]] constexpr int encoder(int sensors) {
-  return gyro(sensors) + 2 * sensors;
-}
-/// The lever arms come last: once found they are held, and the filter runs on the states before
-/// them.
-[[nodiscard]] constexpr int places(int sensors) {
-  return encoder(sensors) + encoder_states;
-}
-[[nodiscard]] constexpr int states(int sensors) {
-  return places(sensors) + 2 * sensors;
-}
-/// Static states from first_of(0) on: the sensors' constants, the phase, the lever arms.
-[[nodiscard]] constexpr int standing(int sensors) {
-  return states(sensors) - first_of(0);
-}
-}  // namespace wheel
-
 /// Noise parameters of the filter; estimated from the recording by tune_wheel().
 struct WheelNoise {
   /// Two-sided densities of the motion noise: white jerk, rad²/s⁵, for irregular speeds, and white
@@ -113,52 +73,6 @@ inline constexpr double warm_up_std_mps2 = 0.05;
   return std::expm1(-share_of_recording) / std::expm1(-1.0);
 }
 
-/// Measurements of one sensor in the plane of the wheel, SI.
-struct PlanarReadings {
-  std::vector<double> u_mps2, v_mps2;  ///< NaN where missing
-  std::vector<double> variance_m2ps4;  ///< of each measurement, both axes alike
-  /// Gyroscope rate about the axle, NaN where missing; empty without one.
-  std::vector<double> speed_radps{};
-  double speed_variance = 0.0;  ///< variance of each, rad²/s²
-  std::size_t saturated_speeds = 0;
-
-  [[nodiscard]] bool has(std::size_t row) const {
-    return !std::isnan(u_mps2[row]) && !std::isnan(v_mps2[row]);
-  }
-};
-
-/// (c, s) of each order of an encoder's errors, rad.
-using EncoderErrors = std::array<Uncertain, wheel::encoder_states - 1>;
-/// Without a calibration: the disc may be off centre by a twentieth of its radius.
-inline constexpr EncoderErrors uncalibrated_errors_rad{
-    Uncertain{0.0, 0.05}, {0.0, 0.05}, {0.0, 0.05}, {0.0, 0.05}};
-
-/// Estimated variance of an encoder's fixes beyond that of the counts.
-struct FixNoise {
-  double constant_rad2 = 0.0;  ///< such as errors of higher order
-  double stamps_s2 = 0.0;      ///< of the time stamps
-
-  [[nodiscard]] double variance_rad2(double speed_radps) const {
-    return constant_rad2 + square(speed_radps) * stamps_s2;
-  }
-};
-
-/// An encoder's angle at each epoch: the mean of its fixes since the epoch before.
-struct EncoderReadings {
-  std::vector<double> angle_rad;      ///< its own, unwrapped; NaN without a fix
-  std::vector<double> age_s;          ///< the epoch's time less the fixes'
-  std::vector<double> variance_rad2;  ///< of the fixes, from the counts' width
-  double step_rad = 0.0;              ///< width of a count; 0: no visible steps
-  FixNoise more{};
-  double direction = 1.0;  ///< d
-  double zero_rad = 0.0;   ///< current estimate of o; its state is the difference
-  double walk_psd = 0.0;   ///< random walk of o, rad²/s, for single missed counts
-  EncoderErrors errors_rad = uncalibrated_errors_rad;  ///< prior
-  double nonlinearity = 0.0;  ///< standard deviation of the accelerometers', at 1 g
-
-  [[nodiscard]] bool has(std::size_t k) const { return !std::isnan(angle_rad[k]); }
-};
-
 /// Result of an earlier pass, about which the measurements are linearised:
 ///
 /// - about its constants always;
@@ -178,17 +92,6 @@ struct WheelPath {
 /// the information, and ripple within a turn would determine a lever arm through the motion model.
 /// The averages leave only the change of the mean force with speed.
 using WheelLevers = std::vector<Mat<2>>;
-
-/// One epoch of the merged time line and the row of each sensor measured then.
-struct WheelEpoch {
-  static constexpr std::int64_t no_row = -1;
-  double dt_s = 0.0;  ///< since the previous epoch
-  std::array<std::int64_t, 2> row{no_row, no_row};
-  /// Wheel static: the measurements around keep their values, see mark_standing().
-  bool stands = false;
-  /// Variance of the times of the measurements averaged in this epoch.
-  double spread_s2 = 0.0;
-};
 
 /// A wheel whose measurements are constant for this long is static: its speed is 0 with this
 /// standard deviation. On a rolling wheel, an angle that departs from rest with growing speed

@@ -7,7 +7,7 @@
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/estimate/wheel.hpp"
-#include "proofmass/estimate/wheel/model.hpp"
+#include "proofmass/estimate/wheel/readings.hpp"
 
 // From a sensor's data to measurements in the plane of its wheel.
 namespace proofmass::estimate {
