@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace proofmass::estimate {
 /// Forward and backward pass over `size` epochs: advance(state, k, step) and forward(k, step) for
 /// each, then backward(k, step) in falling k. The forward pass stores the state at every `chunk`-th
 /// epoch, `shortest` or as many as make 4096 states; the backward pass reruns each chunk, so that
-/// memory is O(size / chunk + chunk) states and steps instead of one step for each epoch.
+/// memory is O(size / chunk + chunk) states and steps instead of one step for each epoch. A long
+/// run reruns each chunk on a second thread during backward() of the next.
 template <class Step,
           std::size_t shortest,
           class State,
@@ -24,6 +26,8 @@ template <class Step,
           class Backward>
 void there_and_back(
     std::size_t size, State state, Advance&& advance, Forward&& forward, Backward&& backward) {
+  // With shorter chunks the threads would take longer to start than to run.
+  constexpr std::size_t worth_a_thread = 4096 * shortest;
   const std::size_t chunk = std::max(shortest, size / 4096);
   std::vector<State> starts;
   starts.reserve(size / chunk + 1);
@@ -33,11 +37,29 @@ void there_and_back(
     advance(state, k, now);
     forward(k, std::as_const(now));
   }
-  std::vector<Step> steps(std::min(chunk, size));
-  for (std::size_t c = starts.size(); c-- > 0;) {
+  const auto rerun = [&](std::size_t c, std::vector<Step>& steps) {
     const std::size_t first = c * chunk, last = std::min(first + chunk, size);
     for (std::size_t k = first; k < last; ++k) advance(starts[c], k, steps[k - first]);
-    for (std::size_t k = last; k-- > first;) backward(k, std::as_const(steps[k - first]));
+  };
+  const auto go_back = [&](std::size_t c, const std::vector<Step>& steps) {
+    const std::size_t first = c * chunk, last = std::min(first + chunk, size);
+    for (std::size_t k = last; k-- > first;) backward(k, steps[k - first]);
+  };
+  std::vector<Step> steps(std::min(chunk, size)), before(size < worth_a_thread ? 0 : chunk);
+  if (size < worth_a_thread) {
+    for (std::size_t c = starts.size(); c-- > 0;) {
+      rerun(c, steps);
+      go_back(c, steps);
+    }
+    return;
+  }
+  rerun(starts.size() - 1, steps);
+  for (std::size_t c = starts.size(); c-- > 0;) {
+    std::jthread ahead;
+    if (c > 0) ahead = std::jthread([&, c] { rerun(c - 1, before); });
+    go_back(c, steps);
+    if (c > 0) ahead.join();
+    std::swap(steps, before);
   }
 }
 

@@ -196,6 +196,23 @@ WheelFit smooth_at_places(const WheelReadings& readings,
   return fit;
 }
 
+/// The constants of smooth_at_places() alone.
+template <int S>
+WheelFit constants_at_places(const WheelReadings& readings,
+                             const Settled<S>& settled,
+                             const WheelPath& about) {
+  WheelFit fit;
+  fit.track = {settled.prior.beginning, settled.noise, about, 0.0};
+  auto state = prior_state<S>(settled.prior);
+  LostShare lost(readings.gravity_mps2);
+  const auto model = held_model<S>(readings, settled.noise, about);
+  filter(model, 0, model.size(), wheel_gate, state,
+         [&](std::size_t, const auto& step) { lost.add(step); });
+  fit.track.lost = lost.share();
+  take_constants(state.x, settled, fit);
+  return fit;
+}
+
 /// Gravity is the reference of scales and lever arms: if it is larger by a fraction, the scales are
 /// smaller and the lever arms larger by that fraction, the angle unchanged. `believed` is the share
 /// of the lever arms' information from their prior, which does not depend on gravity.
@@ -370,7 +387,7 @@ WheelFit fit_sensors(WheelReadings& readings,
   const std::size_t each = readings_to_average(readings, track);
   WheelReadings coarse = averaged(readings, each);
   WheelTrack coarse_track = spread_track(track, readings, coarse);
-  const int rounds = S == 1 && depth == FitDepth::whole ? 4 : 2;
+  const int rounds = S == 1 && depth != FitDepth::track ? 4 : 2;
   Settled<S> settled = settle_rounds<S>(coarse, coarse_track, belief, rounds, progress);
   // A warm-up is not a random walk: it drifts fastest at the start, where the count of turns
   // begins.
@@ -385,7 +402,9 @@ WheelFit fit_sensors(WheelReadings& readings,
   track = spread_track(coarse_track, coarse, readings);
   settle_variance(held_model<S>(readings, settled.noise, track.path), settled.prior, readings);
   readings.shakes = coarse.shakes;
-  WheelFit fit = smooth_at_places(readings, settled, track.path, progress);
+  WheelFit fit = depth == FitDepth::constants
+                     ? constants_at_places(readings, settled, track.path)
+                     : smooth_at_places(readings, settled, track.path, progress);
   constexpr int count = wheel::standing(S);
   fit.constants_prior_cov =
       prior_state<S>(settled.prior).x.cov.template bottomRightCorner<count, count>();
@@ -393,6 +412,7 @@ WheelFit fit_sensors(WheelReadings& readings,
   add_held_figures(settled, coarse, coarse_track.path, readings, track.path, fit);
   add_gravity_uncertainty<S>(readings, settled.places_cov * positive_inverse(belief.cov), fit);
   add_hub_bursts(readings, track.path, fit);
+  if (depth == FitDepth::constants) return fit;
   widen_at_rest<S>(readings, fit);
   if (readings.encoder) {
     add_nonlinearity<S>(readings.encoder->nonlinearity, fit);

@@ -134,6 +134,8 @@ inline constexpr double lost_prediction_rad = 0.8;
 /// Extent of a fit.
 enum class FitDepth {
   whole,
+  /// Constants and track, without the smoothed motion: for a fit that is repeated with the radius.
+  constants,
   /// Motion and noise on averaged measurements, for a sensor that is then fitted together with
   /// another.
   track,

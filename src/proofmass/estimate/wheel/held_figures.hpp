@@ -325,6 +325,7 @@ void add_held_figures(const Settled<S>& settled,
     return;
   fit.constants_cov += fit.constants_prior_cov;
   const std::vector<double>& speed_radps = fit.series.speed_radps;
+  if (speed_radps.empty()) return;
   const double late_s = readings.delay_s.std;
   for (std::size_t k = 0; k < speed_radps.size(); ++k) {
     add_in_square(fit.series.angle_std_rad[k], late_s * speed_radps[k]);

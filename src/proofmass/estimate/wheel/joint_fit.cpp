@@ -119,9 +119,10 @@ WheelFit fit_with_radius(WheelReadings& readings,
                          FitDepth depth,
                          const WheelOptions& options) {
   const std::size_t sensors = readings.sensors.size();
-  WheelFit free = fit_wheel(readings, track, anywhere(sensors, ConstantsPrior{}.place_m), depth,
-                            options.progress);
-  if (!options.radius_m || depth == FitDepth::track) return free;
+  const bool again = options.radius_m && depth == FitDepth::whole;
+  WheelFit free = fit_wheel(readings, track, anywhere(sensors, ConstantsPrior{}.place_m),
+                            again ? FitDepth::constants : depth, options.progress);
+  if (!again) return free;
   const Uncertain radius_m{*options.radius_m, radius_std_m(options)};
   WheelFit held =
       fit_wheel(readings, free.track, on_circles(free, sensors, radius_m), depth, options.progress);
