@@ -90,6 +90,27 @@ TEST(Smoother, InChunksIsTheSameAsInOnePiece) {
   }
 }
 
+// The state counts epochs and the step squares it, in chunks of 2 to 5 with and without a thread.
+TEST(Smoother, GoesBackOverTheStepsOfTheWayThere) {
+  for (const std::size_t size : {0U, 1U, 5U, 8191U, 8192U, 8193U, 20'001U}) {
+    std::vector<std::size_t> there, back;
+    there_and_back<std::size_t, 2>(
+        size, std::size_t{0},
+        [](std::size_t& state, std::size_t k, std::size_t& step) {
+          step = state * k;
+          ++state;
+        },
+        [&](std::size_t, std::size_t step) { there.push_back(step); },
+        [&](std::size_t k, std::size_t step) {
+          EXPECT_EQ(step, k * k);
+          back.push_back(step);
+        });
+    std::ranges::reverse(back);
+    EXPECT_EQ(there.size(), size);
+    EXPECT_EQ(back, there);
+  }
+}
+
 TEST(Smoother, MeansAloneAreThoseOfTheWholeSmoother) {
   Gauge model;
   model.jump_at = 120.0;

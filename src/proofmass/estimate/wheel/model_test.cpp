@@ -3,6 +3,7 @@
 #include <complex>
 #include <gtest/gtest.h>
 
+#include "proofmass/estimate/wheel/fit.hpp"
 #include "proofmass/estimate/wheel_test_support.hpp"
 
 namespace proofmass::estimate::wheel_model_test {
