@@ -76,8 +76,8 @@ struct RatedRuns {
     replace(blocks, noise, first);
   }
 
-  /// Takes `next`, whose runs are in order, as are those now. The ratios of runs that remain as
-  /// they are remain too.
+  /// Takes the runs of `next`, which are in order as the present ones are. Runs that are in both
+  /// keep their ratios.
   void replace(const RestBlocks& blocks, const RestNoise& noise, std::vector<RestRun>& next) {
     std::vector<PerAxis> next_ratios;
     next_ratios.reserve(next.size());
