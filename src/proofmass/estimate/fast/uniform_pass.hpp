@@ -8,11 +8,11 @@
 #include "proofmass/estimate/fast/constant_gain_lanes.hpp"
 #include "proofmass/estimate/fast/filter_composition.hpp"
 #include "proofmass/estimate/fast/lane_pair.hpp"
+#include "proofmass/estimate/fast/log_product.hpp"
 #include "proofmass/estimate/fast/packed_filter.hpp"
 #include "proofmass/estimate/fast/steady_state.hpp"
 #include "proofmass/estimate/fast/uniform_lanes.hpp"
 #include "proofmass/estimate/fast/uniform_smoother.hpp"
-#include "proofmass/estimate/filter/log_product.hpp"
 
 // The three passes of run_uniform(), a chunk of the recording at a time.
 namespace proofmass::estimate::packed {
