@@ -268,14 +268,16 @@ void add_rounding(const WheelReadings& readings, WheelFit& fit) {
         square(more_rad[static_cast<std::size_t>(i)]);
 }
 
-/// Number of measurements that may be averaged before the wheel turns by a twentieth of a radian.
-std::size_t readings_to_average(const WheelReadings& readings, const WheelTrack& track) {
+/// Number of measurements that may be averaged before the wheel turns by an angle.
+std::size_t readings_within(double angle_rad,
+                            const WheelReadings& readings,
+                            const WheelTrack& track) {
   double fastest = 0.0;
   for (const Mat<wheel::moving>& at : track.path.moving)
     fastest = std::max(fastest, std::abs(at(wheel::speed)));
   // A short recording keeps at least 50 averages.
   const double most = std::clamp(static_cast<double>(readings.epochs.size()) / 50.0, 1.0, 64.0);
-  return static_cast<std::size_t>(std::clamp(0.05 * readings.rate_hz() / fastest, 1.0, most));
+  return static_cast<std::size_t>(std::clamp(angle_rad * readings.rate_hz() / fastest, 1.0, most));
 }
 
 /// A track of the averaged measurements, on the time line of all of them.
@@ -292,6 +294,24 @@ WheelTrack spread_track(const WheelTrack& track,
     out.path.moving.push_back(moving);
   }
   return out;
+}
+
+/// add_held_figures() of a long recording of a bench, on averages over a tenth of a radian: only
+/// differences between runs depend on them. Returns false, and adds nothing, for others, and if a
+/// run slips.
+template <int S>
+bool add_held_figures_coarsely(const Settled<S>& settled,
+                               const WheelReadings& readings,
+                               const WheelTrack& track,
+                               WheelFit& fit) {
+  constexpr std::size_t fewest_epochs = 50'000;
+  constexpr double angle_rad = 0.1;
+  if (readings.shakes || readings.encoder) return false;
+  const std::size_t each = readings_within(angle_rad, readings, track);
+  if (each == 1 || readings.epochs.size() / each < fewest_epochs) return false;
+  const WheelReadings coarser = averaged(readings, each);
+  const WheelPath path = spread_track(track, readings, coarser).path;
+  return HeldFigures<S>(coarser, settled, path, readings.time_s).add_to(fit);
 }
 
 /// Assigns each measurement the estimated variance of its average, times the averaging factor.
@@ -384,7 +404,7 @@ WheelFit fit_sensors(WheelReadings& readings,
   constexpr int ripple_at = wheel::ripple(S) - wheel::first_of(0);
   if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
     readings.orders = orders_in<S>(readings, track.path);
-  const std::size_t each = readings_to_average(readings, track);
+  const std::size_t each = readings_within(0.05, readings, track);
   WheelReadings coarse = averaged(readings, each);
   WheelTrack coarse_track = spread_track(track, readings, coarse);
   const int rounds = S == 1 && depth != FitDepth::track ? 4 : 2;
@@ -409,7 +429,8 @@ WheelFit fit_sensors(WheelReadings& readings,
   fit.constants_prior_cov =
       prior_state<S>(settled.prior).x.cov.template bottomRightCorner<count, count>();
   fit.constants_prior_cov.template bottomRightCorner<2 * S, 2 * S>() = belief.cov;
-  add_held_figures(settled, coarse, coarse_track.path, readings, track.path, fit);
+  if (!add_held_figures_coarsely(settled, readings, track, fit))
+    add_held_figures(settled, coarse, coarse_track.path, readings, track.path, fit);
   add_gravity_uncertainty<S>(readings, settled.places_cov * positive_inverse(belief.cov), fit);
   add_hub_bursts(readings, track.path, fit);
   if (depth == FitDepth::constants) return fit;
