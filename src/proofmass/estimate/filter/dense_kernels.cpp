@@ -22,9 +22,16 @@ void keep_rest(const double* K, const double* h, const double* from, double* y, 
 
 }  // namespace
 
-// Without the attribute, the loop becomes a call of memcpy().
-PM_VECTOR_CLONES [[gnu::optimize("no-tree-loop-distribute-patterns")]] void copy_entries(
-    const double* __restrict from, double* __restrict to, int count) {
+// Otherwise GCC makes the loop a call of memcpy().
+#if defined(__GNUC__) && !defined(__clang__)
+#define PM_LOOP_OF_STORES [[gnu::optimize("no-tree-loop-distribute-patterns")]]
+#else
+#define PM_LOOP_OF_STORES
+#endif
+
+PM_VECTOR_CLONES PM_LOOP_OF_STORES void copy_entries(const double* __restrict from,
+                                                     double* __restrict to,
+                                                     int count) {
   for (int i = 0; i < count; ++i) to[i] = from[i];
 }
 
