@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <random>
 
 #include "proofmass/estimate/wheel_test_support.hpp"
 
@@ -495,6 +496,23 @@ TEST(EstimateWheel, OfAnUprightAxleIsNotObservableEvenWhereTheAxisIsLookedFor) {
       estimate_wheel({record(lively, {}, 60.0, 12, {.axle_tilt_rad = test::pi / 2})}, {});
   ASSERT_FALSE(upright.has_value());
   EXPECT_EQ(upright.error().code, Errc::not_observable);
+}
+
+// A smoothed track follows white noise as it does gravity; the fit explains none of it.
+TEST(EstimateWheel, WhiteNoiseIsNoWheel) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 8.0);
+  WheelSensor sensor{.name = "noise", .time_s = {}, .accel_mps2 = {}};
+  for (int k = 0; k < 2000; ++k) {
+    sensor.time_s.push_back(k / 200.0);
+    for (int axis = 0; axis < 3; ++axis)
+      sensor.accel_mps2[static_cast<std::size_t>(axis)].push_back((axis < 2 ? 1.0 : 0.05) *
+                                                                  noise(random));
+  }
+  const auto found =
+      estimate_wheel({sensor}, with(&WheelOptions::spin_axis, std::array{0.0, 0.0, 1.0}));
+  ASSERT_FALSE(found);
+  EXPECT_NE(found.error().message.find("no rotation of gravity"), std::string::npos);
 }
 
 // The search took ten seconds and ended with a lost angle, its covariances below the smallest

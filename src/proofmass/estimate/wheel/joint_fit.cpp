@@ -189,10 +189,13 @@ Result<Single> fit_single(const WheelSensor& sensor,
   double least_lost = 1.0;
   for (std::size_t seek = 0; !options.encoder && seek < wheel_seeks; ++seek) {
     const WheelTrack track = find_track(single.readings, seek);
-    if (track.lost > not_a_wheel && !shows_gravity(single.readings, track)) break;
+    const bool explained = track.lost <= not_a_wheel;
+    if (!explained && !shows_gravity(single.readings, track)) break;
+    single.fit = fit_with_radius(single.readings, track, depth, options);
+    // A smoothed track follows white noise, too, but a fit with ripple does not explain it.
+    if (!explained && single.fit.track.lost > not_a_wheel) break;
     followed = true;
     least_lost = std::min(least_lost, track.lost);
-    single.fit = fit_with_radius(single.readings, track, depth, options);
     if (top_speed_radps(single.fit) > fastest || has_lost(single.fit, least_lost)) continue;
     // A fit that explains more but whose turns are uncertain outweighs a certain one.
     const bool explains_less = unsure && unsure->fit.track.lost < single.fit.track.lost;
