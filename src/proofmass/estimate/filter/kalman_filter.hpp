@@ -175,8 +175,44 @@ struct Step {
 template <StateSpaceModel Model>
 using StepOf = Step<Model::states, Model::moving, Model::channels>;
 
-/// Propagates the state from epoch k − 1 to k (at k = 0: only its measurements) and records the
-/// step in `step`.
+/// Propagates x and the count of epochs gated from epoch k − 1 to k (at k = 0: only its
+/// measurements) and records the step but for its `filtered`, which may be x itself.
+template <StateSpaceModel Model>
+void advance_in_place(const Model& model,
+                      std::size_t k,
+                      const Gate& gate,
+                      Gaussian<Model::states>& x,
+                      int& epochs_gated,
+                      StepOf<Model>& step) {
+  constexpr int N = Model::states;
+  const int active = active_states(model);
+  if (k > 0) {
+    const auto transition = model.transition(x.mean, k);
+    step.F = transition.F;
+    predict(x, transition, active);
+  } else {
+    step.F.setIdentity();
+  }
+  if (epochs_gated >= gate.patience) {
+    model.reopen(x, k);
+    epochs_gated = 0;
+  }
+  Readings<N, Model::channels> readings;
+  const Mat<N> linearised_at = x.mean;
+  model.measure(linearised_at, k, readings);
+  bool any_used = false;
+  for (int i = 0; i < readings.count; ++i) {
+    Reading<N>& reading = readings.rows[static_cast<std::size_t>(i)];
+    reading.predicted += reading.h.dot(x.mean - linearised_at);
+    Update<N>& update = step.updates[static_cast<std::size_t>(i)];
+    correct(x, reading, gate, active, update);
+    any_used = any_used || (update.used && i < readings.count - readings.constraints);
+  }
+  if (readings.count > 0) epochs_gated = any_used ? 0 : epochs_gated + 1;
+  step.count = readings.count;
+}
+
+/// Propagates the state from epoch k − 1 to k and records the step.
 template <StateSpaceModel Model>
 void advance(const Model& model,
              std::size_t k,
@@ -184,31 +220,7 @@ void advance(const Model& model,
              FilterState<Model::states>& state,
              StepOf<Model>& step) {
   constexpr int N = Model::states;
-  const int active = active_states(model);
-  if (k > 0) {
-    const auto transition = model.transition(state.x.mean, k);
-    step.F = transition.F;
-    predict(state.x, transition, active);
-  } else {
-    step.F.setIdentity();
-  }
-  if (state.epochs_gated >= gate.patience) {
-    model.reopen(state.x, k);
-    state.epochs_gated = 0;
-  }
-  Readings<N, Model::channels> readings;
-  const Mat<N> linearised_at = state.x.mean;
-  model.measure(linearised_at, k, readings);
-  bool any_used = false;
-  for (int i = 0; i < readings.count; ++i) {
-    Reading<N>& reading = readings.rows[static_cast<std::size_t>(i)];
-    reading.predicted += reading.h.dot(state.x.mean - linearised_at);
-    Update<N>& update = step.updates[static_cast<std::size_t>(i)];
-    correct(state.x, reading, gate, active, update);
-    any_used = any_used || (update.used && i < readings.count - readings.constraints);
-  }
-  if (readings.count > 0) state.epochs_gated = any_used ? 0 : state.epochs_gated + 1;
-  step.count = readings.count;
+  advance_in_place(model, k, gate, state.x, state.epochs_gated, step);
   step.filtered.mean = state.x.mean;
   if constexpr (N > 12)
     copy_entries(state.x.cov.data(), step.filtered.cov.data(), N * N);
@@ -216,7 +228,8 @@ void advance(const Model& model,
     step.filtered.cov = state.x.cov;
 }
 
-/// Filters epochs [first, last) from `state` and calls visit(k, step) for each.
+/// Filters epochs [first, last) from `state`, which is set at the end, and calls visit(k, step) for
+/// each.
 template <StateSpaceModel Model, class Visit>
 void filter(const Model& model,
             std::size_t first,
@@ -225,10 +238,12 @@ void filter(const Model& model,
             FilterState<Model::states>& state,
             Visit&& visit) {
   StepOf<Model> step;
+  step.filtered = state.x;
   for (std::size_t k = first; k < last; ++k) {
-    advance(model, k, gate, state, step);
+    advance_in_place(model, k, gate, step.filtered, state.epochs_gated, step);
     visit(k, std::as_const(step));
   }
+  state.x = step.filtered;
 }
 
 }  // namespace proofmass::estimate

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <semaphore>
+#include <stop_token>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -26,7 +29,6 @@ template <class Step,
           class Backward>
 void there_and_back(
     std::size_t size, State state, Advance&& advance, Forward&& forward, Backward&& backward) {
-  // With shorter chunks the threads would take longer to start than to run.
   constexpr std::size_t worth_a_thread = 4096 * shortest;
   const std::size_t chunk = std::max(shortest, size / 4096);
   std::vector<State> starts;
@@ -37,29 +39,39 @@ void there_and_back(
     advance(state, k, now);
     forward(k, std::as_const(now));
   }
-  const auto rerun = [&](std::size_t c, std::vector<Step>& steps) {
+  const std::size_t chunks = starts.size();
+  std::array<std::vector<Step>, 2> steps;
+  const auto rerun = [&](std::size_t c) {
     const std::size_t first = c * chunk, last = std::min(first + chunk, size);
-    for (std::size_t k = first; k < last; ++k) advance(starts[c], k, steps[k - first]);
+    for (std::size_t k = first; k < last; ++k) advance(starts[c], k, steps[c % 2][k - first]);
   };
-  const auto go_back = [&](std::size_t c, const std::vector<Step>& steps) {
+  const auto go_back = [&](std::size_t c) {
     const std::size_t first = c * chunk, last = std::min(first + chunk, size);
-    for (std::size_t k = last; k-- > first;) backward(k, steps[k - first]);
+    for (std::size_t k = last; k-- > first;) backward(k, std::as_const(steps[c % 2][k - first]));
   };
-  std::vector<Step> steps(std::min(chunk, size)), before(size < worth_a_thread ? 0 : chunk);
   if (size < worth_a_thread) {
-    for (std::size_t c = starts.size(); c-- > 0;) {
-      rerun(c, steps);
-      go_back(c, steps);
+    for (auto& of_chunk : steps) of_chunk.resize(std::min(chunk, size));
+    for (std::size_t c = chunks; c-- > 0;) {
+      rerun(c);
+      go_back(c);
     }
     return;
   }
-  rerun(starts.size() - 1, steps);
-  for (std::size_t c = starts.size(); c-- > 0;) {
-    std::jthread ahead;
-    if (c > 0) ahead = std::jthread([&, c] { rerun(c - 1, before); });
-    go_back(c, steps);
-    if (c > 0) ahead.join();
-    std::swap(steps, before);
+  for (auto& of_chunk : steps) of_chunk.resize(chunk);
+  std::counting_semaphore<> free(2), ready(0);  // of the steps of two chunks
+  const std::jthread ahead([&](const std::stop_token& stop) {
+    const std::stop_callback wake(stop, [&] { free.release(); });
+    for (std::size_t c = chunks; c-- > 0;) {
+      free.acquire();
+      if (stop.stop_requested()) return;
+      rerun(c);
+      ready.release();
+    }
+  });
+  for (std::size_t c = chunks; c-- > 0;) {
+    ready.acquire();
+    go_back(c);
+    free.release();
   }
 }
 
