@@ -220,6 +220,21 @@ World all_at_once(std::uint64_t seed) {
   return world;
 }
 
+/// More than 200 000 rows: most passes run on averages of up to 0.25 rad.
+World long_bench(std::uint64_t seed) {
+  Draw draw(seed);
+  World& world = draw.world();
+  world.course = draw.one_of({Course::constant, Course::two_speeds, Course::ramp,
+                              Course::start_stop, Course::stop_and_go, Course::wander});
+  world.duration_s = draw.between(600.0, 1200.0);
+  world.rate_hz = draw.between(300.0, 400.0);
+  world.slow_radps = draw.speed_within(3.0, 60.0);
+  world.fast_radps = 2.0 * world.slow_radps;
+  world.ripple = draw.log_between(1e-4, 3e-3);
+  if (draw.unit_random() < 0.5) world.units.push_back(draw.unit());
+  return world;
+}
+
 estimate::WheelOptions axis_given(const World&) {
   estimate::WheelOptions options;
   options.spin_axis = {0.0, 0.0, 1.0};
@@ -260,6 +275,8 @@ constexpr std::array all{
     Scenario{"pushed-encoder", "a wheelchair's with an encoder", pushed_with_encoder, axis_given},
     Scenario{"coarse", "converter steps of 3 to 6 times the noise", coarse, axis_given},
     Scenario{"all-at-once", "ripple, tilt, pole and warm-up", all_at_once, axis_given},
+    Scenario{"long", "one or two sensors, ten to twenty minutes at 3 to 60 rpm", long_bench,
+             axis_given},
 };
 
 }  // namespace

@@ -54,7 +54,9 @@ class Command {
       case Course::ramp:
         return slow + (fast - slow) * std::min(std::max(t / T, 0.0), 1.0);
       case Course::start_stop:
-        return fast * (eased((t - 0.08 * T) / (0.2 * T)) - eased((t - 0.7 * T) / (0.2 * T)));
+        return fast * once(t / T);
+      case Course::stop_and_go:
+        return fast * once(std::fmod(t, 60.0) / 60.0);
       case Course::reversal:
         return fast - 2.0 * fast * eased((t - 0.4 * T) / (0.2 * T));
       case Course::wander: {
@@ -78,6 +80,11 @@ class Command {
   }
 
  private:
+  /// From rest to full speed and back, by the share of the time.
+  [[nodiscard]] static double once(double share) {
+    return eased((share - 0.08) / 0.2) - eased((share - 0.7) / 0.2);
+  }
+
   struct Push {
     double at_s, size;
   };

@@ -15,8 +15,8 @@
 // delay, a tilted axle, a road, pushes by hand, Wi-Fi stamps.
 namespace proofmass::wheel_world {
 
-/// Shape of the commanded speed.
-enum class Course { constant, two_speeds, ramp, start_stop, reversal, wander, pushes };
+/// Shape of the commanded speed; stop_and_go is start_stop once a minute.
+enum class Course { constant, two_speeds, ramp, start_stop, stop_and_go, reversal, wander, pushes };
 
 struct Gyro {
   double scale = 1.0, bias_radps = 0.0, noise_radps = 0.003;

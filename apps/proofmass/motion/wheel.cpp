@@ -99,7 +99,8 @@ void run_wheel(const WheelCommand& command) {
   report.options.encoder = std::move(input.encoder);
   report.options.alignment_std_rad = input.alignment_std_rad;
   report.options.progress = progress_bar(command.output);
-  report.solution = need(estimate::estimate_wheel(input.sensors, report.options), Stage::computing);
+  report.solution =
+      need(estimate::estimate_wheel(std::move(input.sensors), report.options), Stage::computing);
   report.options.progress = {};  // which clears the progress bar
   finish(report::describe(report), [&] { return report::wheel_series(report); }, command.output);
 }

@@ -161,7 +161,7 @@ struct WheelSolution {
 /// Errors: invalid_argument (no sensor, unequal lengths, an axis of length 0, non-ascending time),
 /// too_few_samples, not_observable (no spin axis can be found, or gravity does not rotate with the
 /// encoder's angle).
-[[nodiscard]] Result<WheelSolution> estimate_wheel(const std::vector<WheelSensor>& sensors,
+[[nodiscard]] Result<WheelSolution> estimate_wheel(std::vector<WheelSensor> sensors,
                                                    const WheelOptions& options);
 
 }  // namespace proofmass::estimate

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/colour.hpp"
@@ -87,19 +88,16 @@ void note_backward(const WheelModel<S>& model,
   fit.track.path.moving[k] = mean.template head<wheel::moving>();
 }
 
-/// The extended filter as it would run on calibrated sensors: the initial motion unknown, the
-/// constants with the estimates of the whole recording at its first epoch and the uncertainty at
-/// its last.
+/// The extended filter as it would run on calibrated sensors, the initial motion unknown.
 template <int S>
 void filter_calibrated(const WheelModel<S>& model,
                        const WheelPrior& prior,
-                       const Gaussian<wheel::states(S)>& known,
+                       const Calibrated<S>& known,
                        WheelSeries& series) {
   constexpr int count = wheel::standing(S);
   auto state = prior_state<S>(prior);
-  state.x.mean.template tail<count>() = known.mean.template tail<count>();
-  state.x.cov.template bottomRightCorner<count, count>() =
-      known.cov.template bottomRightCorner<count, count>();
+  state.x.mean.template tail<count>() = known.mean;
+  state.x.cov.template bottomRightCorner<count, count>() = known.cov;
   filter(model, 0, model.size(), wheel_gate, state, [&](std::size_t k, const auto& step) {
     const auto now = model.motion(step.filtered.mean);
     series.filtered_angle_rad[k] = now.angle;
@@ -136,16 +134,16 @@ template <int S>
 WheelFit smooth_at_places(const WheelReadings& readings,
                           const Settled<S>& settled,
                           const WheelPath& about,
+                          const Calibrated<S>& known,
                           const Progress& progress) {
   const auto model = held_model<S>(readings, settled.noise, about);
   const std::size_t size = model.size();
   WheelFit fit;
   resize(fit.series, size);
   fit.series.time_s = readings.time_s;
-  fit.track = {settled.prior.beginning, settled.noise, about, 0.0};
+  fit.track = {settled.prior.beginning, settled.noise, about, true, 0.0};
   const auto prior = prior_state<S>(settled.prior);
   Gaussian<wheel::states(S)> end = prior.x;
-  Mat<wheel::states(S)> first_mean = end.mean;
   ConsistencyCheck check({.channels = std::vector<std::string>(channels_of(model)),
                           .rate_hz = readings.rate_hz(),
                           .gate = wheel_gate.limit});
@@ -156,30 +154,32 @@ WheelFit smooth_at_places(const WheelReadings& readings,
     if (progress && done % 65536 == 0)
       progress(stage, static_cast<double>(done) / static_cast<double>(size));
   };
-  smooth(
-      model, prior, wheel_gate,
-      [&](std::size_t k, const auto& step) {
-        if (k > 0) {
-          const Gaussian<wheel::moving> predicted = predicted_motion(model, k, end);
-          end.mean.template head<wheel::moving>() = predicted.mean;
-          gravity.add(k, end.mean);
-          if (readings.time_s[k] > readings.time_s.front() + 1.0 &&
-              predicted.cov(wheel::angle, wheel::angle) > square(lost_prediction_rad))
-            add_doubt(k, predicted, readings.time_s, fit.doubts);
-        }
-        end = step.filtered;
-        colour.add(step);
-        lost.add(step);
-        note_forward(model, k, step, check, fit);
-        report("filter", k);
-      },
-      [&](std::size_t k, const auto& step, const auto& later) {
-        note_backward(model, k, step, later, fit);
-        if (k == 0) first_mean = later.mean(step.filtered);
-        report("smoother", size - k);
-      });
+  const auto there_and_back = [&] {
+    smooth(
+        model, prior, wheel_gate,
+        [&](std::size_t k, const auto& step) {
+          if (k > 0) {
+            const Gaussian<wheel::moving> predicted = predicted_motion(model, k, end);
+            end.mean.template head<wheel::moving>() = predicted.mean;
+            gravity.add(k, end.mean);
+            if (readings.time_s[k] > readings.time_s.front() + 1.0 &&
+                predicted.cov(wheel::angle, wheel::angle) > square(lost_prediction_rad))
+              add_doubt(k, predicted, readings.time_s, fit.doubts);
+          }
+          end = step.filtered;
+          colour.add(step);
+          lost.add(step);
+          note_forward(model, k, step, check, fit);
+          report("filter", k);
+        },
+        [&](std::size_t k, const auto& step, const auto& later) {
+          note_backward(model, k, step, later, fit);
+          report("smoother", size - k);
+        });
+  };
+  run_tasks(size,
+            {there_and_back, [&] { filter_calibrated(model, settled.prior, known, fit.series); }});
   doubt_smoothed(model, readings, end, fit);
-  filter_calibrated(model, settled.prior, {first_mean, end.cov}, fit.series);
   fit.track.lost = lost.share();
   fit.consistency = check.judge();
   take_constants(end, settled, fit);
@@ -202,7 +202,7 @@ WheelFit constants_at_places(const WheelReadings& readings,
                              const Settled<S>& settled,
                              const WheelPath& about) {
   WheelFit fit;
-  fit.track = {settled.prior.beginning, settled.noise, about, 0.0};
+  fit.track = {settled.prior.beginning, settled.noise, about, true, 0.0};
   auto state = prior_state<S>(settled.prior);
   LostShare lost(readings.gravity_mps2);
   const auto model = held_model<S>(readings, settled.noise, about);
@@ -268,16 +268,26 @@ void add_rounding(const WheelReadings& readings, WheelFit& fit) {
         square(more_rad[static_cast<std::size_t>(i)]);
 }
 
-/// Number of measurements that may be averaged before the wheel turns by an angle.
-std::size_t readings_within(double angle_rad,
-                            const WheelReadings& readings,
-                            const WheelTrack& track) {
-  double fastest = 0.0;
+/// Turn of the wheel during an average of measurements. On a road longer averages hide vibration,
+/// which an encoder's errors resemble, too; on a bench the model of an average is accurate to 2e-5
+/// m/s² over long_average_rad.
+constexpr double average_rad = 0.05, long_average_rad = 0.25;
+
+/// Number of measurements to average for every pass but the last ones: those of average_rad or, in
+/// a long recording, as many as leave `enough` averages, but no more than those of `most_rad`.
+std::size_t averaging_factor(const WheelReadings& readings,
+                             const WheelTrack& track,
+                             double most_rad) {
+  constexpr double enough = 20'000.0;
+  double fastest_radps = 1e-9;
   for (const Mat<wheel::moving>& at : track.path.moving)
-    fastest = std::max(fastest, std::abs(at(wheel::speed)));
+    fastest_radps = std::max(fastest_radps, std::abs(at(wheel::speed)));
+  const auto epochs = static_cast<double>(readings.epochs.size());
+  const double step_rad = fastest_radps / readings.rate_hz();
+  const double angle_rad = std::clamp(step_rad * epochs / enough, average_rad, most_rad);
   // A short recording keeps at least 50 averages.
-  const double most = std::clamp(static_cast<double>(readings.epochs.size()) / 50.0, 1.0, 64.0);
-  return static_cast<std::size_t>(std::clamp(angle_rad * readings.rate_hz() / fastest, 1.0, most));
+  const double most = std::clamp(epochs / 50.0, 1.0, 64.0);
+  return static_cast<std::size_t>(std::clamp(angle_rad / step_rad, 1.0, most));
 }
 
 /// A track of the averaged measurements, on the time line of all of them.
@@ -285,33 +295,8 @@ WheelTrack spread_track(const WheelTrack& track,
                         const WheelReadings& averaged,
                         const WheelReadings& readings) {
   WheelTrack out = track;
-  out.path.moving.clear();
-  std::size_t at = 0;
-  for (const double t : readings.time_s) {
-    while (at + 1 < averaged.time_s.size() && averaged.time_s[at + 1] <= t) ++at;
-    Mat<wheel::moving> moving = track.path.moving[at];
-    moving(wheel::angle) += (t - averaged.time_s[at]) * moving(wheel::speed);
-    out.path.moving.push_back(moving);
-  }
+  out.path.moving = moving_at(readings.time_s, averaged.time_s, track.path.moving);
   return out;
-}
-
-/// add_held_figures() of a long recording of a bench, on averages over a tenth of a radian: only
-/// differences between runs depend on them. Returns false, and adds nothing, for others, and if a
-/// run slips.
-template <int S>
-bool add_held_figures_coarsely(const Settled<S>& settled,
-                               const WheelReadings& readings,
-                               const WheelTrack& track,
-                               WheelFit& fit) {
-  constexpr std::size_t fewest_epochs = 50'000;
-  constexpr double angle_rad = 0.1;
-  if (readings.shakes || readings.encoder) return false;
-  const std::size_t each = readings_within(angle_rad, readings, track);
-  if (each == 1 || readings.epochs.size() / each < fewest_epochs) return false;
-  const WheelReadings coarser = averaged(readings, each);
-  const WheelPath path = spread_track(track, readings, coarser).path;
-  return HeldFigures<S>(coarser, settled, path, readings.time_s).add_to(fit);
 }
 
 /// Assigns each measurement the estimated variance of its average, times the averaging factor.
@@ -395,6 +380,37 @@ void widen_at_rest(const WheelReadings& readings, WheelFit& fit) {
                 std_of(by_constants(series.angle_rad.size() - 1) - by_constants(0)) / rad_per_turn);
 }
 
+/// Passes on averages of `each` measurements.
+template <int S>
+struct CoarseFit {
+  std::size_t each = 1;
+  WheelReadings readings;
+  WheelTrack track;
+  Settled<S> settled;
+};
+
+template <int S>
+CoarseFit<S> settle_on_averages(const WheelReadings& readings,
+                                const WheelTrack& track,
+                                const PlacesPrior& belief,
+                                FitDepth depth,
+                                const Progress& progress) {
+  const bool alone = S == 1 && depth != FitDepth::track;
+  const int rounds = (alone ? 4 : 2) / (depth == FitDepth::again ? 2 : 1);
+  const auto on_averages = [&](std::size_t each) {
+    CoarseFit<S> fit{each, averaged(readings, each), {}, {}};
+    fit.track = spread_track(track, readings, fit.readings);
+    fit.settled = settle_rounds<S>(fit.readings, fit.track, belief, rounds, progress);
+    return fit;
+  };
+  const std::size_t each = averaging_factor(readings, track, average_rad);
+  const std::size_t most =
+      readings.encoder ? each : averaging_factor(readings, track, long_average_rad);
+  CoarseFit<S> fit = on_averages(most);
+  if (fit.readings.shakes && most > each) return on_averages(each);
+  return fit;
+}
+
 template <int S>
 WheelFit fit_sensors(WheelReadings& readings,
                      WheelTrack track,
@@ -404,33 +420,33 @@ WheelFit fit_sensors(WheelReadings& readings,
   constexpr int ripple_at = wheel::ripple(S) - wheel::first_of(0);
   if (track.path.standing.segment<2 * wheel::ripple_orders>(ripple_at).isZero())
     readings.orders = orders_in<S>(readings, track.path);
-  const std::size_t each = readings_within(0.05, readings, track);
-  WheelReadings coarse = averaged(readings, each);
-  WheelTrack coarse_track = spread_track(track, readings, coarse);
-  const int rounds = S == 1 && depth != FitDepth::track ? 4 : 2;
-  Settled<S> settled = settle_rounds<S>(coarse, coarse_track, belief, rounds, progress);
+  auto [each, coarse, coarse_track, settled] =
+      settle_on_averages<S>(readings, track, belief, depth, progress);
   // A warm-up is not a random walk: it drifts fastest at the start, where the count of turns
   // begins.
   settled.noise.bias_walk_psd *= 3.0;
-  improve(coarse, settled, coarse_track);
+  const Calibrated<S> known = improve(coarse, settled, coarse_track);
   settled.prior.beginning = coarse_track.beginning;
   spread_variance(coarse, each, readings);
   readings.rolling_radius_m = coarse.rolling_radius_m;
   if (readings.encoder) readings.encoder->more = coarse.encoder->more;
   if (depth == FitDepth::track)
-    return smooth_at_places(coarse, settled, coarse_track.path, progress);
+    return smooth_at_places(coarse, settled, coarse_track.path, known, progress);
   track = spread_track(coarse_track, coarse, readings);
-  settle_variance(held_model<S>(readings, settled.noise, track.path), settled.prior, readings);
+  WheelFit fit;
+  if (depth == FitDepth::constants) {
+    fit = constants_at_places(coarse, settled, coarse_track.path);
+    fit.track.path.moving = std::move(track.path.moving);
+  } else {
+    settle_variance(held_model<S>(readings, settled.noise, track.path), settled.prior, readings);
+    fit = smooth_at_places(readings, settled, track.path, known, progress);
+  }
   readings.shakes = coarse.shakes;
-  WheelFit fit = depth == FitDepth::constants
-                     ? constants_at_places(readings, settled, track.path)
-                     : smooth_at_places(readings, settled, track.path, progress);
   constexpr int count = wheel::standing(S);
   fit.constants_prior_cov =
       prior_state<S>(settled.prior).x.cov.template bottomRightCorner<count, count>();
   fit.constants_prior_cov.template bottomRightCorner<2 * S, 2 * S>() = belief.cov;
-  if (!add_held_figures_coarsely(settled, readings, track, fit))
-    add_held_figures(settled, coarse, coarse_track.path, readings, track.path, fit);
+  add_held_figures(settled, coarse, coarse_track.path, readings, track.path, fit);
   add_gravity_uncertainty<S>(readings, settled.places_cov * positive_inverse(belief.cov), fit);
   add_hub_bursts(readings, track.path, fit);
   if (depth == FitDepth::constants) return fit;
@@ -463,6 +479,21 @@ void assume_rolling_radius(WheelReadings& readings) {
   if (readings.found_rolling_radius_m)
     readings.rolling_radius_m =
         combined(readings.rolling_radius_m, *readings.found_rolling_radius_m);
+}
+
+std::vector<Mat<wheel::moving>> moving_at(const std::vector<double>& time_s,
+                                          const std::vector<double>& path_time_s,
+                                          const std::vector<Mat<wheel::moving>>& path) {
+  std::vector<Mat<wheel::moving>> moving;
+  moving.reserve(time_s.size());
+  std::size_t at = 0;
+  for (const double t : time_s) {
+    while (at + 1 < path_time_s.size() &&
+           std::abs(path_time_s[at + 1] - t) <= std::abs(path_time_s[at] - t))
+      ++at;
+    moving.push_back(constant_jerk(t - path_time_s[at]) * path[at]);
+  }
+  return moving;
 }
 
 WheelFit fit_wheel(WheelReadings& readings,

@@ -73,8 +73,15 @@ struct WheelTrack {
   Beginning beginning;
   WheelNoise noise;
   WheelPath path;
-  double lost = 1.0;  ///< share of unexplained measurements, 0 … 1
+  bool tuned = false;  ///< the noise, to the recording
+  double lost = 1.0;   ///< share of unexplained measurements, 0 … 1
 };
+
+/// A path at other, rising times: from its nearest epoch, with constant jerk.
+[[nodiscard]] std::vector<Mat<wheel::moving>> moving_at(
+    const std::vector<double>& time_s,
+    const std::vector<double>& path_time_s,
+    const std::vector<Mat<wheel::moving>>& path);
 
 /// Eight measurements a turn: the limit of the search and of the result.
 [[nodiscard]] constexpr double fastest_radps(double rate_hz) {
@@ -136,6 +143,8 @@ enum class FitDepth {
   whole,
   /// Constants and track, without the smoothed motion: for a fit that is repeated with the radius.
   constants,
+  /// The whole repetition, from the track of the first fit, in half the rounds.
+  again,
   /// Motion and noise on averaged measurements, for a sensor that is then fitted together with
   /// another.
   track,

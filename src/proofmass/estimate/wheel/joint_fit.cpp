@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/linalg.hpp"
@@ -54,6 +55,10 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
   const auto time_of = [&](std::size_t s) {
     return sensors[s]->time_s[next[s]] - (s == 0 ? 0.0 : offset_s);
   };
+  std::size_t most = 0;
+  for (const WheelSensor* sensor : sensors) most = std::max(most, sensor->time_s.size());
+  readings.time_s.reserve(most);  // of sensors with common stamps
+  readings.epochs.reserve(most);
   for (;;) {
     std::array<bool, 2> has{};
     for (std::size_t s = 0; s < sensors.size(); ++s) has[s] = skip_unusable(s);
@@ -115,17 +120,17 @@ Uncertain radius_in(const WheelFit& fit, std::size_t sensors, std::size_t sensor
 
 /// Fits once without the radius and, where one is given, again with it.
 WheelFit fit_with_radius(WheelReadings& readings,
-                         const WheelTrack& track,
+                         WheelTrack track,
                          FitDepth depth,
                          const WheelOptions& options) {
   const std::size_t sensors = readings.sensors.size();
   const bool again = options.radius_m && depth == FitDepth::whole;
-  WheelFit free = fit_wheel(readings, track, anywhere(sensors, ConstantsPrior{}.place_m),
+  WheelFit free = fit_wheel(readings, std::move(track), anywhere(sensors, ConstantsPrior{}.place_m),
                             again ? FitDepth::constants : depth, options.progress);
   if (!again) return free;
   const Uncertain radius_m{*options.radius_m, radius_std_m(options)};
-  WheelFit held =
-      fit_wheel(readings, free.track, on_circles(free, sensors, radius_m), depth, options.progress);
+  WheelFit held = fit_wheel(readings, std::move(free.track), on_circles(free, sensors, radius_m),
+                            FitDepth::again, options.progress);
   held.given_radius_m = radius_m;
   for (std::size_t s = 0; s < sensors; ++s)
     held.free_radius_m.push_back(radius_in(free, sensors, s));
@@ -188,14 +193,15 @@ Result<Single> fit_single(const WheelSensor& sensor,
   }
   double least_lost = 1.0;
   for (std::size_t seek = 0; !options.encoder && seek < wheel_seeks; ++seek) {
-    const WheelTrack track = find_track(single.readings, seek);
-    const bool explained = track.lost <= not_a_wheel;
+    WheelTrack track = find_track(single.readings, seek);
+    const double begun_lost = track.lost;
+    const bool explained = begun_lost <= not_a_wheel;
     if (!explained && !shows_gravity(single.readings, track)) break;
-    single.fit = fit_with_radius(single.readings, track, depth, options);
+    single.fit = fit_with_radius(single.readings, std::move(track), depth, options);
     // A smoothed track follows white noise, too, but a fit with ripple does not explain it.
     if (!explained && single.fit.track.lost > not_a_wheel) break;
     followed = true;
-    least_lost = std::min(least_lost, track.lost);
+    least_lost = std::min(least_lost, begun_lost);
     if (top_speed_radps(single.fit) > fastest || has_lost(single.fit, least_lost)) continue;
     // A fit that explains more but whose turns are uncertain outweighs a certain one.
     const bool explains_less = unsure && unsure->fit.track.lost < single.fit.track.lost;
@@ -221,6 +227,15 @@ Result<Single> fit_single(const WheelSensor& sensor, FitDepth depth, const Wheel
   if (!plane) return plane.error();
   prepared.plane = *plane;
   return fit_single(sensor, std::move(prepared), depth, options);
+}
+
+/// Frees what is merged anew for a pair.
+void forget_measurements(WheelReadings& readings) {
+  std::vector<WheelEpoch>().swap(readings.epochs);
+  std::vector<double>().swap(readings.time_s);
+  for (PlanarReadings& sensor : readings.sensors)
+    for (std::vector<double>* axis : {&sensor.u_mps2, &sensor.v_mps2})
+      std::vector<double>().swap(*axis);
 }
 
 WheelMotion motion_of(const WheelFit& fit) {
@@ -265,6 +280,7 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
     if (sensors.size() > 1) of_sensor.progress = std::move(progress);  // else with its own stages
     fits[s] = fit_single(sensors[s], depth, of_sensor);
   });
+  pair.singles.reserve(sensors.size());
   for (auto& single : fits) {
     if (!*single) return single->error();
     pair.singles.push_back(std::move(*single).value());
@@ -279,6 +295,7 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
     if (!again) return again.error();
     pair.singles[1] = std::move(again).value();
   }
+  for (Single& single : pair.singles) forget_measurements(single.readings);
   const WheelMotion one = motion_of(pair.singles[0].fit), two = motion_of(pair.singles[1].fit);
   // Two angles by one encoder agree whatever the stamps of the sensors: their small difference,
   // against the speed, would be a significant and wrong offset.
@@ -296,7 +313,7 @@ Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOpt
   return pair;
 }
 
-Joint fit_jointly(const std::vector<WheelSensor>& sensors, Pair pair, const WheelOptions& options) {
+Joint fit_jointly(std::vector<WheelSensor> sensors, Pair pair, const WheelOptions& options) {
   const Single &one = pair.singles[0], &two = pair.singles[1];
   Joint joint;
   joint.readings = merge({&sensors[0], &sensors[1]}, {&one.prepared, &two.prepared},
@@ -313,18 +330,11 @@ Joint fit_jointly(const std::vector<WheelSensor>& sensors, Pair pair, const Whee
     joint.readings.encoder->more = one.readings.encoder->more;
   }
   for (std::size_t s = 0; s < 2; ++s)
-    joint.readings.sensors[s].variance_m2ps4 = pair.singles[s].readings.sensors[0].variance_m2ps4;
+    joint.readings.sensors[s].variance_m2ps4 =
+        std::move(pair.singles[s].readings.sensors[0].variance_m2ps4);
   WheelTrack track = one.fit.track;
-  track.path.moving.clear();
-  const auto& times = one.fit.series.time_s;
-  std::size_t at = 0;
-  for (const double t : joint.readings.time_s) {
-    while (at + 1 < times.size() && times[at + 1] <= t) ++at;
-    Mat<wheel::moving> moving = one.fit.track.path.moving[at];
-    const double dt = t - times[at];
-    moving(wheel::angle) += dt * moving(wheel::speed);
-    track.path.moving.push_back(moving);
-  }
+  track.path.moving =
+      moving_at(joint.readings.time_s, one.fit.series.time_s, one.fit.track.path.moving);
   const Eigen::VectorXd &first = one.fit.track.path.standing, &second = two.fit.track.path.standing;
   track.path.standing.resize(wheel::standing(2));
   constexpr int between = wheel::gyro(1) - wheel::ripple(1);
@@ -334,8 +344,9 @@ Joint fit_jointly(const std::vector<WheelSensor>& sensors, Pair pair, const Whee
       first.segment<2>(gyro), second.segment<2>(gyro),
       first.segment<wheel::encoder_states>(encoder), first.tail<2>(), second.tail<2>();
   track.beginning.angle_rad = track.path.moving.front()(wheel::angle);
-  pair.singles.clear();  // their memory
-  joint.fit = fit_with_radius(joint.readings, track, FitDepth::whole, options);
+  pair.singles.clear();
+  sensors.clear();
+  joint.fit = fit_with_radius(joint.readings, std::move(track), FitDepth::whole, options);
   return joint;
 }
 

@@ -36,13 +36,14 @@ struct Pair {
 [[nodiscard]] Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors,
                                        const WheelOptions& options);
 
-/// Both sensors in one filter, started from the single fits.
+/// Both sensors in one filter, started from the single fits. The memory of both arguments is freed
+/// as soon as the measurements are on one time line.
 struct Joint {
   WheelReadings readings;
   WheelFit fit;
 };
 
-[[nodiscard]] Joint fit_jointly(const std::vector<WheelSensor>& sensors,
+[[nodiscard]] Joint fit_jointly(std::vector<WheelSensor> sensors,
                                 Pair pair,
                                 const WheelOptions& options);
 

@@ -152,11 +152,13 @@ double log_likelihood_of(const WheelModel<S>& model,
   return std::isfinite(log_likelihood) ? log_likelihood : -std::numeric_limits<double>::infinity();
 }
 
-/// A smoothed trajectory, the state after its last epoch, and LostShare of its innovations.
+/// A smoothed trajectory, the state after its last epoch, the smoothed constants at the first, and
+/// LostShare of its innovations.
 template <int S>
 struct Traced {
   WheelPath path;
   Gaussian<wheel::states(S)> end;
+  Mat<wheel::standing(S)> first;
   double lost = 1.0;
 };
 
@@ -175,7 +177,9 @@ Traced<S> trace_path(const WheelModel<S>& model, const FilterState<wheel::states
         lost.add(step);
       },
       [&](std::size_t k, const StepOf<Model>& step, const BackwardScore<Model::states>& later) {
-        moving[k] = later.mean(step.filtered).template head<wheel::moving>();
+        const auto mean = later.mean(step.filtered).eval();
+        moving[k] = mean.template head<wheel::moving>();
+        if (k == 0) traced.first = mean.template tail<wheel::standing(S)>();
       });
   traced.path.standing = traced.end.mean.template tail<wheel::standing(S)>();
   traced.lost = lost.share();
@@ -186,7 +190,7 @@ Traced<S> trace_path(const WheelModel<S>& model, const FilterState<wheel::states
 template <int S>
 void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings);
 
-/// A part of the recording to tune on: all of it or, if it is long, the interval of 20 000 epochs
+/// A part of the recording to tune on: all of it or, if it is long, the interval of 12 000 epochs
 /// with the largest speed change, with the filter's state at its beginning.
 template <int S>
 struct Excerpt {
@@ -202,12 +206,10 @@ struct TunedNoise {
   double log_likelihood = 0.0;
 };
 
-/// Maximum-likelihood motion noise on the excerpt: each parameter in turn by steps of a shrinking
-/// factor, from `first_factor` down.
+/// Maximum-likelihood motion noise on the excerpt, from the model's, which may be `tuned` already:
+/// each parameter in turn by steps of a shrinking factor.
 template <int S>
-[[nodiscard]] TunedNoise tune_noise(WheelModel<S> model,
-                                    const Excerpt<S>& excerpt,
-                                    double first_factor);
+[[nodiscard]] TunedNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt, bool tuned);
 
 /// The levers of a path on the measurements' time line.
 [[nodiscard]] WheelLevers levers_of(const WheelPath& path, const WheelReadings& readings);

@@ -120,11 +120,11 @@ struct SlowWheel {
   WheelReadings readings;
   WheelPath path;
 
-  SlowWheel() {
+  explicit SlowWheel(int epochs = 2400) {
     readings.sensors.resize(1);
     test::Normal normal(2);
     PlanarReadings& sensor = readings.sensors[0];
-    for (int k = 0; k < 2400; ++k) {
+    for (int k = 0; k < epochs; ++k) {
       const double t = k / rate_hz, angle = speed_radps * t;
       readings.time_s.push_back(t);
       readings.epochs.push_back({k == 0 ? 0.0 : 1.0 / rate_hz, {k, WheelEpoch::no_row}});
@@ -167,6 +167,69 @@ TEST(SettleVariance, SeesAHubThatShakes) {
   settle_variance(held_model<1>(slow.readings, follows_all, slow.path), prior, slow.readings);
   EXPECT_TRUE(slow.readings.shakes);
   EXPECT_GT(sensor.variance_m2ps4[1800], 0.4 * square(shaking_mps2));
+}
+
+// A recording that is long enough is filtered in two halves side by side.
+TEST(SettleVariance, FollowsTheNoiseThroughBothHalvesOfALongRecording) {
+  constexpr std::size_t epochs = 420'000, louder_from = 300'000;
+  SlowWheel slow(epochs);
+  PlanarReadings& sensor = slow.readings.sensors[0];
+  test::Normal normal(5);
+  for (std::size_t k = louder_from; k < epochs; ++k)
+    for (std::vector<double>* axis : {&sensor.u_mps2, &sensor.v_mps2})
+      (*axis)[k] += 3.0 * SlowWheel::noise_mps2 * normal();
+  const WheelPrior prior{{0.0, 0.2, SlowWheel::speed_radps, 1.0}, {}, Places::Zero(2)};
+  settle_variance(held_model<1>(slow.readings, {.jerk_psd = 1e-3}, slow.path), prior,
+                  slow.readings);
+  const auto std_mps2 = [&](std::size_t k) { return std::sqrt(sensor.variance_m2ps4[k]); };
+  for (const std::size_t k : {1'000U, 150'000U, 205'000U, 215'000U, 290'000U})
+    EXPECT_NEAR(std_mps2(k), SlowWheel::noise_mps2, 0.3 * SlowWheel::noise_mps2) << k;
+  for (const std::size_t k : {310'000U, 419'000U})
+    EXPECT_NEAR(std_mps2(k), std::sqrt(10.0) * SlowWheel::noise_mps2, SlowWheel::noise_mps2) << k;
+}
+
+// At these steps, an hour's averages, a filter with the motion noise of the search for the track
+// slips at some values and not at others, and the likelihood has a maximum above the start.
+TEST(TuneNoise, LeavesAStartAtWhichTheFilterSlips) {
+  const SlowWheel slow(40'000);
+  const WheelReadings averages = averaged(slow.readings, 20);
+  const WheelPath path{moving_at(averages.time_s, slow.readings.time_s, slow.path.moving),
+                       slow.path.standing};
+  const WheelPrior prior{{0.0, 0.2, SlowWheel::speed_radps, 1.0}, {}, Places::Zero(2)};
+  for (const double jerk_psd : {20.0, 100.0, 200.0, 500.0, 2e4}) {
+    const auto model = held_model<1>(averages, {.jerk_psd = jerk_psd}, path);
+    const TunedNoise tuned = tune_noise(model, excerpt_to_tune(model, prior), false);
+    EXPECT_LT(tuned.noise.jerk_psd, 1e-4) << jerk_psd;
+  }
+}
+
+TEST(MovingAt, IsExactWithConstantJerk) {
+  const Mat<wheel::moving> start(1.0, 2.0, -3.0, 0.5);
+  const std::vector<double> path_s{0.0, 1.0, 2.5};
+  std::vector<Mat<wheel::moving>> path;
+  for (const double t : path_s) path.emplace_back(constant_jerk(t) * start);
+  const std::vector<double> times_s{-0.5, 0.0, 0.7, 2.4, 3.0};
+  const auto moving = moving_at(times_s, path_s, path);
+  for (std::size_t k = 0; k < times_s.size(); ++k) {
+    const double t = times_s[k];
+    EXPECT_NEAR(moving[k](wheel::angle), 1.0 + 2.0 * t - 1.5 * t * t + t * t * t / 12.0, 1e-12);
+    EXPECT_NEAR(moving[k](wheel::accel), -3.0 + 0.5 * t, 1e-12);
+  }
+}
+
+TEST(MovingAt, IsFromTheNearerSideOfAGap) {
+  const std::vector<Mat<wheel::moving>> path{{0.0, 1.0, 0.0, 0.0}, {100.0, 5.0, 0.0, 0.0}};
+  const auto moving = moving_at({4.0, 6.0}, {0.0, 10.0}, path);
+  EXPECT_EQ(moving[0](wheel::angle), 4.0);
+  EXPECT_EQ(moving[1](wheel::angle), 80.0);
+}
+
+TEST(TurnedAfter, IsATurnFromTheGivenEpoch) {
+  WheelPath path;
+  for (int k = 0; k < 30; ++k) path.moving.emplace_back(-k, -1.0, 0.0, 0.0);
+  EXPECT_EQ(turned_after(path, 0), 7U);
+  EXPECT_EQ(turned_after(path, 10), 17U);
+  EXPECT_EQ(turned_after(path, 25), 30U);  // never
 }
 
 TEST(MarkStanding, IsAWheelWhoseReadingsKeepTheirValues) {

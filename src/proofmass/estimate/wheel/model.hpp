@@ -86,6 +86,9 @@ struct WheelPath {
   Eigen::VectorXd standing;  ///< in the state's order, from wheel::first_of(0) on
 };
 
+/// The first epoch at which a path is a turn away from where it is at epoch `first`.
+[[nodiscard]] std::size_t turned_after(const WheelPath& path, std::size_t first);
+
 /// Coefficients of the lever arms at each epoch: the squared speed and the acceleration of a path,
 /// each averaged over a turn. The lever arms' columns in the Jacobian are ω² and α, known only
 /// through the measurements themselves. A filter that takes these noisy columns as exact overstates
@@ -98,6 +101,19 @@ using WheelLevers = std::vector<Mat<2>>;
 /// leaves the direction of the measurements unchanged, because the hub's acceleration compensates
 /// gravity's rotation.
 inline constexpr double standing_stretch_s = 0.5, standing_speed_radps = 0.05;
+
+/// Transition of a motion over t_s seconds of constant jerk.
+[[nodiscard]] inline Mat<wheel::moving, wheel::moving> constant_jerk(double t_s) {
+  const double t2 = t_s * t_s, t3 = t2 * t_s;
+  Mat<wheel::moving, wheel::moving> F;
+  // clang-format off
+  F << 1, t_s, t2 / 2, t3 / 6,
+       0, 1,   t_s,    t2 / 2,
+       0, 0,   1,      t_s,
+       0, 0,   0,      1;
+  // clang-format on
+  return F;
+}
 
 template <int Sensors>
 struct WheelModel {
@@ -196,11 +212,8 @@ struct WheelModel {
     const double t = (*epochs)[k].dt_s, t2 = t * t, t3 = t2 * t, t4 = t2 * t2, t5 = t4 * t;
     const double t6 = t3 * t3, t7 = t4 * t3;
     Transition<states, moving> step;
+    step.F = constant_jerk(t);
     // clang-format off
-    step.F << 1, t, t2 / 2, t3 / 6,
-              0, 1, t,      t2 / 2,
-              0, 0, 1,      t,
-              0, 0, 0,      1;
     step.Q << t7 / 252, t6 / 72, t5 / 30, t4 / 24,
               t6 / 72,  t5 / 20, t4 / 8,  t3 / 6,
               t5 / 30,  t4 / 8,  t3 / 3,  t2 / 2,
@@ -419,16 +432,18 @@ struct WheelModel {
 };
 
 // One epoch of the filter and of the smoother, compiled once, in wheel/model.cpp.
-extern template void advance(const WheelModel<1>&,
-                             std::size_t,
-                             const Gate&,
-                             FilterState<wheel::states(1)>&,
-                             StepOf<WheelModel<1>>&);
-extern template void advance(const WheelModel<2>&,
-                             std::size_t,
-                             const Gate&,
-                             FilterState<wheel::states(2)>&,
-                             StepOf<WheelModel<2>>&);
+extern template void advance_in_place(const WheelModel<1>&,
+                                      std::size_t,
+                                      const Gate&,
+                                      Gaussian<wheel::states(1)>&,
+                                      int&,
+                                      StepOf<WheelModel<1>>&);
+extern template void advance_in_place(const WheelModel<2>&,
+                                      std::size_t,
+                                      const Gate&,
+                                      Gaussian<wheel::states(2)>&,
+                                      int&,
+                                      StepOf<WheelModel<2>>&);
 extern template void look_back(BackwardInformation<wheel::states(1)>&,
                                const StepOf<WheelModel<1>>&);
 extern template void look_back(BackwardInformation<wheel::states(2)>&,

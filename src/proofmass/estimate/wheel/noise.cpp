@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/fix_scatter.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
@@ -20,6 +21,18 @@ struct NoiseStretch {
   [[nodiscard]] double variance() const {
     return std::max(std::max(innovation2 - explained, 0.2 * innovation2) / readings, least);
   }
+  void append(const NoiseStretch& later) {
+    innovation2 += later.innovation2;
+    explained += later.explained;
+    readings += later.readings;
+  }
+};
+
+/// The stretches of each sensor, and sums over the whole recording for what does not change.
+struct GatheredNoise {
+  std::array<std::vector<NoiseStretch>, 2> stretches;
+  std::array<NoiseStretch, 2> gyros;
+  FixScatter fixes;
 };
 
 /// A variance over time: its logarithm linear between the middles of intervals, or one value for
@@ -77,9 +90,8 @@ template <int S>
 void gather(const WheelReadings& readings,
             std::size_t k,
             const StepOf<WheelModel<S>>& step,
-            std::array<NoiseStretch*, 2> stretches,
-            std::array<NoiseStretch, 2>& gyros,
-            FixScatter& fixes) {
+            std::size_t stretch,
+            GatheredNoise& noise) {
   int channel = 0;
   for (std::size_t s = 0; s < readings.sensors.size() && channel < step.count; ++s) {
     const std::int64_t row = readings.epochs[k].row[s];
@@ -90,23 +102,24 @@ void gather(const WheelReadings& readings,
       const auto& u = step.updates[static_cast<std::size_t>(channel)];
       if (!u.used) continue;
       // Strongly down-weighted measurements contain little information on the noise.
-      stretches[s]->innovation2 += std::min(u.nis(), 4.0 * wheel_gate.huber) * u.expected;
-      stretches[s]->explained += u.expected - readings.sensors[s].variance_m2ps4[at];
-      stretches[s]->readings += 1.0;
+      NoiseStretch& sums = noise.stretches[s][stretch];
+      sums.innovation2 += std::min(u.nis(), 4.0 * wheel_gate.huber) * u.expected;
+      sums.explained += u.expected - readings.sensors[s].variance_m2ps4[at];
+      sums.readings += 1.0;
     }
     const auto& speeds = readings.sensors[s].speed_radps;
     if (speeds.empty() || std::isnan(speeds[at])) continue;
     const auto& u = step.updates[static_cast<std::size_t>(channel++)];
     if (!u.used) continue;
-    gyros[s].innovation2 += std::min(u.nis(), 4.0 * wheel_gate.huber) * u.expected;
-    gyros[s].explained += u.expected - readings.sensors[s].speed_variance;
-    gyros[s].readings += 1.0;
+    noise.gyros[s].innovation2 += std::min(u.nis(), 4.0 * wheel_gate.huber) * u.expected;
+    noise.gyros[s].explained += u.expected - readings.sensors[s].speed_variance;
+    noise.gyros[s].readings += 1.0;
   }
   if (!readings.encoder || !readings.encoder->has(k)) return;
   const auto& u = step.updates[static_cast<std::size_t>(channel)];
   const double speed_radps = step.filtered.mean(wheel::speed);
-  fixes.add(speed_radps, u.innovation,
-            u.expected - readings.encoder->more.variance_rad2(speed_radps));
+  noise.fixes.add(speed_radps, u.innovation,
+                  u.expected - readings.encoder->more.variance_rad2(speed_radps));
 }
 
 /// Variance of white noise in the measurements from their third differences, to which a slowly
@@ -207,6 +220,21 @@ bool set_least(const WheelModel<S>& model,
   return shows_shaking(all, readings.rate_hz());
 }
 
+/// From as many epochs on, two halves of a recording are filtered side by side.
+constexpr std::size_t worth_a_thread = 400'000;
+
+/// The state of a filter that starts on its model's path at epoch `first`, with the constants at
+/// their prior. Sets the model's first turn.
+template <int S>
+FilterState<wheel::states(S)> state_on_path(WheelModel<S>& model,
+                                            std::size_t first,
+                                            WheelPrior prior) {
+  model.first_turn = turned_after(*model.about, first);
+  prior.beginning.angle_rad = model.about->moving[first](wheel::angle);
+  prior.beginning.speed_radps = model.about->moving[first](wheel::speed);
+  return prior_state<S>(prior);
+}
+
 /// Search limits of the motion noise. A bias that drifted faster could replace gravity.
 constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e5, 1e8, 1e-4};
 
@@ -217,23 +245,38 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
   const double start_s = readings.time_s.front();
   const double length_s = std::max(0.5, 40.0 / std::max(readings.rate_hz(), 1e-9));
   const auto count = static_cast<std::size_t>((readings.time_s.back() - start_s) / length_s) + 1;
-  std::array<std::vector<NoiseStretch>, 2> stretches;
-  for (auto& of_sensor : stretches) of_sensor.resize(count);
+  GatheredNoise noise;
+  for (auto& of_sensor : noise.stretches) of_sensor.resize(count);
   for (std::size_t s = 0; model.about != nullptr && s < readings.sensors.size(); ++s) {
-    const bool shakes = set_least(model, readings, s, length_s, stretches[s]);
+    const bool shakes = set_least(model, readings, s, length_s, noise.stretches[s]);
     if (s == 0) readings.shakes = shakes;
   }
-  std::array<NoiseStretch, 2> gyros;
-  FixScatter fixes;
-  auto state = prior_state<S>(prior);
-  filter(model, 0, model.size(), wheel_gate, state, [&](std::size_t k, const auto& step) {
-    const auto i = static_cast<std::size_t>((readings.time_s[k] - start_s) / length_s);
-    gather<S>(readings, k, step, {&stretches[0][i], &stretches[1][i]}, gyros, fixes);
-  });
-  if (const auto noise = fixes.noise()) readings.encoder->more = *noise;
+  const auto gather_from = [&](std::size_t first, std::size_t last, GatheredNoise& into) {
+    auto part = model;
+    auto state = first == 0 ? prior_state<S>(prior) : state_on_path(part, first, prior);
+    filter(part, first, last, wheel_gate, state, [&](std::size_t k, const auto& step) {
+      const auto stretch = static_cast<std::size_t>((readings.time_s[k] - start_s) / length_s);
+      gather<S>(readings, k, step, stretch, into);
+    });
+  };
+  if (const std::size_t size = model.size();
+      size < worth_a_thread || model.about == nullptr || readings.encoder) {
+    gather_from(0, size, noise);
+  } else {
+    GatheredNoise later;
+    for (auto& of_sensor : later.stretches) of_sensor.resize(count);
+    run_tasks(size, {[&] { gather_from(0, size / 2, noise); },
+                     [&] { gather_from(size / 2, size, later); }});
+    for (std::size_t s = 0; s < 2; ++s) {
+      for (std::size_t i = 0; i < count; ++i) noise.stretches[s][i].append(later.stretches[s][i]);
+      noise.gyros[s].append(later.gyros[s]);
+    }
+  }
+  if (const auto of_fixes = noise.fixes.noise()) readings.encoder->more = *of_fixes;
   for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
-    if (gyros[s].readings > 20.0) readings.sensors[s].speed_variance = gyros[s].variance();
-    const VarianceProfile profile(stretches[s], length_s);
+    if (noise.gyros[s].readings > 20.0)
+      readings.sensors[s].speed_variance = noise.gyros[s].variance();
+    const VarianceProfile profile(noise.stretches[s], length_s);
     if (profile.empty()) continue;
     const double least = model.about == nullptr ? 0.0
                                                 : least_variance(readings.sensors[s],
@@ -249,7 +292,7 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
 
 template <int S>
 Excerpt<S> excerpt_to_tune(const WheelModel<S>& model, const WheelPrior& prior) {
-  constexpr std::size_t most_epochs = 20'000, parts = 4;
+  constexpr std::size_t most_epochs = 12'000, parts = 4;
   const std::size_t size = model.size();
   auto state = prior_state<S>(prior);
   Excerpt<S> best{0, std::min(size, most_epochs), state};
@@ -299,16 +342,34 @@ TunedNoise climb(const Likelihood& likelihood, const WheelNoise& start, double f
   return best;
 }
 
+/// `start` with the likeliest of some values of one parameter and its own. Much too strong a motion
+/// noise lets a filter slip, and there the likelihood has local maxima.
+template <class Likelihood>
+WheelNoise likeliest_start(const Likelihood& likelihood,
+                           const WheelNoise& start,
+                           double WheelNoise::* figure) {
+  TunedNoise best{start, likelihood(start)};
+  for (const double value : {1e2, 1.0, 1e-2, 1e-4, 1e-7}) {
+    WheelNoise candidate = start;
+    candidate.*figure = value;
+    const double log_likelihood = likelihood(candidate);
+    if (log_likelihood > best.log_likelihood) best = {candidate, log_likelihood};
+  }
+  return best.noise;
+}
+
 }  // namespace
 
 template <int S>
-TunedNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt, double first_factor) {
+TunedNoise tune_noise(WheelModel<S> model, const Excerpt<S>& excerpt, bool tuned) {
   const auto likelihood = [&](const WheelNoise& noise) {
     model.noise = noise;
     return log_likelihood_of(model, excerpt.state, excerpt.first, excerpt.last);
   };
   WheelNoise start = model.noise;
   start.snap_psd = std::max(start.snap_psd, lowest.snap_psd);
+  const double first_factor = tuned ? std::sqrt(10.0) : 10.0;
+  if (!tuned) start = likeliest_start(likelihood, start, &WheelNoise::jerk_psd);
   const TunedNoise rough = climb(likelihood, start, first_factor);
   // The likelihood has two maxima, a motion driven by jerk and one by snap, with low values in
   // between.
@@ -325,7 +386,7 @@ template void settle_variance(const WheelModel<1>&, const WheelPrior&, WheelRead
 template void settle_variance(const WheelModel<2>&, const WheelPrior&, WheelReadings&);
 template Excerpt<1> excerpt_to_tune(const WheelModel<1>&, const WheelPrior&);
 template Excerpt<2> excerpt_to_tune(const WheelModel<2>&, const WheelPrior&);
-template TunedNoise tune_noise(WheelModel<1>, const Excerpt<1>&, double);
-template TunedNoise tune_noise(WheelModel<2>, const Excerpt<2>&, double);
+template TunedNoise tune_noise(WheelModel<1>, const Excerpt<1>&, bool);
+template TunedNoise tune_noise(WheelModel<2>, const Excerpt<2>&, bool);
 
 }  // namespace proofmass::estimate

@@ -105,10 +105,7 @@ bool is_not_a_vehicle(const WheelReadings& readings,
 /// One iteration: the measurements' variance, the motion noise and the sensors' lever arms, all
 /// about the current path, whose ripple is adapted to the rolling radius.
 template <int S>
-Settled<S> settle(WheelReadings& readings,
-                  WheelTrack& track,
-                  const PlacesPrior& belief,
-                  double tuning_factor) {
+Settled<S> settle(WheelReadings& readings, WheelTrack& track, const PlacesPrior& belief) {
   auto model = held_model<S>(readings, track.noise, track.path);
   const Places places = track.path.standing.tail<2 * S>();
   WheelPrior prior{track.beginning, prior_for(track.path, readings), places};
@@ -125,7 +122,7 @@ Settled<S> settle(WheelReadings& readings,
   }
   change_rolling_radius(readings.rolling_radius_m.value, readings, model, track.path);
   const Excerpt<S> excerpt = excerpt_to_tune(model, prior);
-  model.noise = tune_noise(model, excerpt, tuning_factor).noise;
+  model.noise = tune_noise(model, excerpt, track.tuned).noise;
   const FoundPlaces likeliest = likeliest_places(model, excerpt, prior, belief);
   WheelPath about = track.path;
   about.standing.tail<2 * S>() = likeliest.mean;
@@ -144,7 +141,10 @@ std::array<RippleFit, wheel::ripple_orders> fit_orders(const WheelModel<S>& mode
   typename WheelModel<S>::State x = WheelModel<S>::State::Zero();
   x.template tail<wheel::standing(S)>() = path.standing;
   Readings<wheel::states(S), WheelModel<S>::channels> out;
-  for (std::size_t k = 0; k < model.size(); ++k) {
+  // That is enough for the choice, in steps that are short against a cycle.
+  constexpr std::size_t enough = 50'000;
+  const std::size_t stride = std::max<std::size_t>(1, model.size() / enough);
+  for (std::size_t k = 0; k < model.size(); k += stride) {
     x.template head<wheel::moving>() = path.moving[k];
     model.measure(x, k, out);
     const double turned = std::abs(path.moving[k](wheel::speed)) * (*model.epochs)[k].dt_s;
@@ -162,14 +162,6 @@ std::array<RippleFit, wheel::ripple_orders> fit_orders(const WheelModel<S>& mode
 }
 
 }  // namespace
-
-std::size_t epochs_of_first_turn(const WheelPath& path) {
-  const double start_rad = path.moving.front()(wheel::angle);
-  const auto away = std::ranges::find_if(path.moving, [&](const Mat<wheel::moving>& at) {
-    return std::abs(at(wheel::angle) - start_rad) > rad_per_turn;
-  });
-  return static_cast<std::size_t>(away - path.moving.begin());
-}
 
 template <int S>
 RippleOrders orders_in(const WheelReadings& readings, const WheelPath& path) {
@@ -189,13 +181,16 @@ RippleOrders orders_in(const WheelReadings& readings, const WheelPath& path) {
 }
 
 template <int S>
-void improve(const WheelReadings& readings, const Settled<S>& settled, WheelTrack& track) {
+Calibrated<S> improve(const WheelReadings& readings, const Settled<S>& settled, WheelTrack& track) {
   const auto model = held_model<S>(readings, settled.noise, track.path);
   Traced<S> traced = trace_path(model, prior_state<S>(settled.prior));
   track.path = std::move(traced.path);
   track.noise = settled.noise;
+  track.tuned = true;
   track.beginning.angle_rad = traced.end.mean(wheel::start);
   track.beginning.speed_radps = track.path.moving.front()(wheel::speed);
+  constexpr int count = wheel::standing(S);
+  return {traced.first, traced.end.cov.template bottomRightCorner<count, count>()};
 }
 
 template <int S>
@@ -204,14 +199,12 @@ Settled<S> settle_rounds(WheelReadings& readings,
                          const PlacesPrior& belief,
                          int most,
                          const Progress& progress) {
-  double tuning_factor = 10.0;
-  Settled<S> settled = settle<S>(readings, track, belief, tuning_factor);
+  Settled<S> settled = settle<S>(readings, track, belief);
   for (int round = 1; round < most; ++round) {
     if (progress) progress("noise and constants", static_cast<double>(round) / most);
     const double before = settled.log_likelihood;
     improve(readings, settled, track);
-    tuning_factor = std::sqrt(10.0);
-    settled = settle<S>(readings, track, belief, tuning_factor);
+    settled = settle<S>(readings, track, belief);
     if (round > 1 && std::abs(settled.log_likelihood - before) < 1.0) break;
   }
   settled.widened =
@@ -224,8 +217,8 @@ Settled<S> settle_rounds(WheelReadings& readings,
 
 template RippleOrders orders_in<1>(const WheelReadings&, const WheelPath&);
 template RippleOrders orders_in<2>(const WheelReadings&, const WheelPath&);
-template void improve(const WheelReadings&, const Settled<1>&, WheelTrack&);
-template void improve(const WheelReadings&, const Settled<2>&, WheelTrack&);
+template Calibrated<1> improve(const WheelReadings&, const Settled<1>&, WheelTrack&);
+template Calibrated<2> improve(const WheelReadings&, const Settled<2>&, WheelTrack&);
 template Settled<1> settle_rounds(
     WheelReadings&, WheelTrack&, const PlacesPrior&, int, const Progress&);
 template Settled<2> settle_rounds(

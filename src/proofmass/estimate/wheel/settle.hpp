@@ -16,9 +16,6 @@ struct Settled {
   double log_likelihood = 0.0;
 };
 
-/// Number of epochs of a path before it is a turn away from its start.
-[[nodiscard]] std::size_t epochs_of_first_turn(const WheelPath& path);
-
 /// The model of the final passes: linearised about a path, with the lever arms held.
 template <int S>
 [[nodiscard]] WheelModel<S> held_model(const WheelReadings& readings,
@@ -26,7 +23,7 @@ template <int S>
                                        const WheelPath& about) {
   auto model = wheel_model<S>(readings, noise);
   model.about = &about;
-  model.first_turn = epochs_of_first_turn(about);
+  model.first_turn = turned_after(about, 0);
   model.places_held = true;
   model.with_ripple = true;
   return model;
@@ -37,9 +34,14 @@ template <int S>
 template <int S>
 [[nodiscard]] RippleOrders orders_in(const WheelReadings& readings, const WheelPath& path);
 
+/// The static states of a wheel that the whole recording has calibrated: their estimates at its
+/// first epoch, with their covariance at its last.
+template <int S>
+using Calibrated = Gaussian<wheel::standing(S)>;
+
 /// Updates the track to the smoother's with the current parameters.
 template <int S>
-void improve(const WheelReadings& readings, const Settled<S>& settled, WheelTrack& track);
+Calibrated<S> improve(const WheelReadings& readings, const Settled<S>& settled, WheelTrack& track);
 
 /// Iterates until the likelihood converges, at most `most` times.
 template <int S>

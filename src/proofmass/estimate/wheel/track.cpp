@@ -118,6 +118,40 @@ std::int64_t append_average(const PlanarReadings& sensor,
   return static_cast<std::int64_t>(out.u_mps2.size()) - 1;
 }
 
+/// Share of unexplained measurements below which no further noise parameters are tried.
+constexpr double clearly_found = 0.3;
+
+/// find_track() on these measurements.
+WheelTrack seek_track(WheelReadings& readings, std::size_t first) {
+  WheelTrack best;
+  best.lost = std::numeric_limits<double>::infinity();
+  for (std::size_t i = first; i < seeks.size(); ++i) {
+    const Seek& seek = seeks[i];
+    set_variance(readings, seek.accel_std_mps2);
+    const auto model = wheel_model<1>(readings, seek.noise);
+    const Beginning beginning = seek_beginning(readings, seek.noise);
+    Traced<1> traced = trace_path(model, prior_state<1>({beginning, seeking_prior, {}}));
+    // A filter that follows every vibration predicts slightly better without being better.
+    if (traced.lost >= 0.6 * best.lost) continue;
+    const Mat<wheel::moving>& at = traced.path.moving.front();
+    best = {{at(wheel::angle), 0.2, at(wheel::speed), beginning.speed_std_radps},
+            seek.noise,
+            std::move(traced.path),
+            false,
+            traced.lost};
+    if (best.lost < clearly_found) break;
+  }
+  return best;
+}
+
+/// Whether the wheel turns by less than a twentieth of a radian between measurements.
+bool turns_little(const WheelReadings& readings, const WheelTrack& track) {
+  const double most_radps = 0.05 * readings.rate_hz();
+  return std::ranges::all_of(track.path.moving, [&](const Mat<wheel::moving>& at) {
+    return std::abs(at(wheel::speed)) < most_radps;
+  });
+}
+
 }  // namespace
 
 double WheelReadings::rate_hz() const {
@@ -177,24 +211,20 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
 
 WheelTrack find_track(WheelReadings& readings, std::size_t first) {
   PM_EXPECTS(readings.sensors.size() == 1 && readings.epochs.size() >= 2);
-  WheelTrack best;
-  best.lost = std::numeric_limits<double>::infinity();
-  for (std::size_t i = first; i < seeks.size(); ++i) {
-    const Seek& seek = seeks[i];
-    set_variance(readings, seek.accel_std_mps2);
-    const auto model = wheel_model<1>(readings, seek.noise);
-    const Beginning beginning = seek_beginning(readings, seek.noise);
-    Traced<1> traced = trace_path(model, prior_state<1>({beginning, seeking_prior, {}}));
-    // A filter that follows every vibration predicts slightly better without being better.
-    if (traced.lost >= 0.6 * best.lost) continue;
-    const Mat<wheel::moving>& at = traced.path.moving.front();
-    best = {{at(wheel::angle), 0.2, at(wheel::speed), beginning.speed_std_radps},
-            seek.noise,
-            std::move(traced.path),
-            traced.lost};
-    if (best.lost < 0.3) break;
+  // At least two averages to the limit of the search, so that none is mistaken for a slow wheel.
+  constexpr std::size_t each = 4, long_recording = 200'000;
+  if (readings.epochs.size() >= long_recording) {
+    WheelReadings averages = averaged(readings, each);
+    WheelTrack track = seek_track(averages, first);
+    if (track.lost < clearly_found && turns_little(averages, track)) {
+      readings.sensors[0].variance_m2ps4.assign(
+          readings.sensors[0].u_mps2.size(),
+          static_cast<double>(each) * averages.sensors[0].variance_m2ps4.front());
+      track.path.moving = moving_at(readings.time_s, averages.time_s, track.path.moving);
+      return track;
+    }
   }
-  return best;
+  return seek_track(readings, first);
 }
 
 bool shows_gravity(const WheelReadings& readings, const WheelTrack& track) {
