@@ -180,9 +180,6 @@ class HeldFigures {
   /// A warm-up of the biases, as far as the recording does not exclude it: if the speed increases
   /// steadily, it resembles the centripetal force of a longer lever arm.
   void vary_warm_up(std::vector<Change>& changes) const {
-    // For the time of these runs; a drift over a longer ramp is not covered.
-    constexpr double longest_s = 600.0;
-    if (readings_.time_s.back() - readings_.time_s.front() > longest_s) return;
     const SymmetricEigen axes = symmetric_eigen(warm_up_information());
     for (int i = 0; i < 2 * S; ++i) {
       const Mat<2 * S> along = axes.vectors.col(i) / std::sqrt(axes.values(i));

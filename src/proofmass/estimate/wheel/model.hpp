@@ -75,7 +75,9 @@ inline constexpr double warm_up_std_mps2 = 0.05;
 
 /// Result of an earlier pass, about which the measurements are linearised:
 ///
-/// - about its constants always;
+/// - about its constants always, but gravity about the predicted angle of the wheel: a ripple that
+///   has drifted from the path's by δ would otherwise leave g δ²/2, which resembles scale errors
+///   and skew;
 /// - about its motion only during the first turn and where the filter's own prediction differs by
 ///   half a radian, which is a cycle slip.
 ///
@@ -263,6 +265,12 @@ struct WheelModel {
     out.count = out.constraints = 0;
     const State at_state = about == nullptr ? x : state_about(x, k);
     const Motion now = motion_shown(at_state);
+    double ripple_rad = 0.0;  // by which the state's exceeds the path's
+    if (about != nullptr && with_ripple && about_prediction(x, k)) {
+      constexpr int first = wheel::ripple(Sensors), count = 2 * wheel::ripple_orders;
+      ripple_rad = now.by_angle.template segment<count>(first).dot(
+          (x - at_state).template segment<count>(first));
+    }
     for (int s = 0; s < Sensors; ++s) {
       const auto index = static_cast<std::size_t>(s);
       if (!has_readings(index, k)) continue;
@@ -271,7 +279,7 @@ struct WheelModel {
       const auto first = static_cast<std::size_t>(out.count);
       const Mat<2> lever =
           levers == nullptr ? Mat<2>(now.speed * now.speed, now.accel) : (*levers)[k];
-      read_sensor(at_state, now, lever, s, (*epochs)[k].spread_s2, out);
+      read_sensor(at_state, now, ripple_rad, lever, s, (*epochs)[k].spread_s2, out);
       auto& u = out.rows[first];
       auto& v = out.rows[first + 1];
       u.value = sensor.u_mps2[at];
@@ -312,11 +320,16 @@ struct WheelModel {
   }
 
  private:
-  [[nodiscard]] State state_about(const State& x, std::size_t k) const {
-    State at = x;
+  /// Whether the measurements are linearised about a predicted motion, not the path's.
+  [[nodiscard]] bool about_prediction(const State& x, std::size_t k) const {
     const bool slips = std::abs(x(wheel::angle) - about->moving[k](wheel::angle)) > 0.5;
     // Lever arms that are estimated would at first outweigh gravity, and rotate the angle.
-    if (k < first_turn || slips || levers != nullptr) at.template head<moving>() = about->moving[k];
+    return k >= first_turn && !slips && levers == nullptr;
+  }
+
+  [[nodiscard]] State state_about(const State& x, std::size_t k) const {
+    State at = x;
+    if (!about_prediction(x, k)) at.template head<moving>() = about->moving[k];
     at.template tail<wheel::standing(Sensors)>() = about->standing;
     if (places_held) at.template tail<2 * Sensors>() = x.template tail<2 * Sensors>();
     return at;
@@ -363,8 +376,11 @@ struct WheelModel {
     row.variance = encoder->variance_rad2[k] + encoder->more.variance_rad2(now.speed);
   }
 
+  /// Gravity is at the angle of `now` plus ripple_rad, less the linear term of this that the
+  /// difference of the ripple states adds.
   void read_sensor(const State& x,
                    const Motion& now,
+                   double ripple_rad,
                    const Mat<2>& lever,
                    int s,
                    double spread_s2,
@@ -372,8 +388,8 @@ struct WheelModel {
     const int at = wheel::first_of(s);
     const double w = now.speed, al = now.accel, late = w * delay_s;
     const double weaker2 = 1.0 / (1.0 + late * late), weaker = std::sqrt(weaker2);
-    const double phi =
-        now.angle + (s > 0 ? phase_rad + x(wheel::phase) : 0.0) + late - std::atan(late);
+    const double phi = now.angle + ripple_rad + (s > 0 ? phase_rad + x(wheel::phase) : 0.0) + late -
+                       std::atan(late);
     const double sin_phi = std::sin(phi), cos_phi = std::cos(phi);
     const int place = wheel::places(Sensors) + 2 * s;
     const double ru = x(place), rv = x(place + 1);
@@ -426,8 +442,9 @@ struct WheelModel {
     u.h(at + wheel::skew) = su * fv;
     v.h(at + wheel::skew) = sv * fu;
     u.h(at + wheel::bias) = v.h(at + wheel::bias + 1) = 1.0;
-    u.predicted = su * (fu + skew * fv) + x(at + wheel::bias);
-    v.predicted = sv * (fv + skew * fu) + x(at + wheel::bias + 1);
+    const double eu = fu - turn_u * ripple_rad, ev = fv - turn_v * ripple_rad;
+    u.predicted = su * (eu + skew * ev) + x(at + wheel::bias);
+    v.predicted = sv * (ev + skew * eu) + x(at + wheel::bias + 1);
   }
 };
 

@@ -332,6 +332,26 @@ TEST(WheelModel, AboutAPathTheConstantsEnterLinearly) {
   }
 }
 
+// A ripple that differs from the path's by 0.02 rad turns the wheel by that much, of which the
+// second order, g δ²/2, is 2 mm/s².
+TEST(WheelModel, AboutAPathARippleKeepsThePredictedAngle) {
+  Normal normal(7);
+  OneEpoch<1> epoch(0.0, 0.0);
+  epoch.model.with_ripple = true;
+  State<1> x = any_state<1>(normal);
+  x.tail<2>().setZero();  // the lever arm
+  WheelPath path;
+  path.moving.push_back(x.head<wheel::moving>());
+  path.standing = x.tail<wheel::standing(1)>();
+  x(wheel::ripple(1)) += 0.02;
+  x(wheel::ripple(1) + 1) -= 0.02;
+  const auto exact = epoch.at(x);
+  epoch.model.about = &path;
+  const auto about = epoch.at(x);
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_NEAR(about.rows[i].predicted, exact.rows[i].predicted, 1e-4);
+}
+
 // Measurements through a delay τ equal those of an undelayed wheel τ earlier, except for the
 // attenuation of rotating components.
 TEST(WheelModel, ADelayShowsTheMotionOfEarlier) {
