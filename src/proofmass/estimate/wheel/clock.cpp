@@ -146,7 +146,10 @@ Result<ClockFit> fit_clocks(const WheelMotion& first,
     }
     // second(t + o) − first(t) = phase + ω δ where the offset is short by −δ.
     const double move = -slope.slope;
-    if (clocks_shared && std::abs(offset_s + move) > 0.1) break;
+    // Stamps of one clock are further apart only if that explains the difference of the speeds.
+    if (clocks_shared && std::abs(offset_s + move) > 0.1 &&
+        !(speed_mismatch(first, second, offset_s + move) < 0.25 * apart))
+      break;
     offset_s += move;
     if (std::abs(move) < 1e-5) break;
   }

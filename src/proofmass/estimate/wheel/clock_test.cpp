@@ -92,6 +92,17 @@ TEST(FitClocks, FindsThatStampsOnOneClockAreNot) {
   EXPECT_NEAR(fit->phase_rad, 0.4, 1e-3);
 }
 
+// At an acceleration of 0.1 rad/s² the speeds differ by 0.03 rad/s, too little to be noticed by
+// itself.
+TEST(FitClocks, FindsAThirdOfASecondBetweenSlowStamps) {
+  const Drive slow{{0.2, 0.0}, {{5.0, 0.0}, {20.0, 2.0}, {20.0, 2.0}, {20.0, 0.0}}};
+  const Seen first(slow, 0.0, 0.0, 1e-3, 1), second(slow, 0.3127, 0.4, 1e-3, 2);
+  const auto fit = fit_clocks(first.motion(), second.motion(), true);
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_NEAR(fit->offset_s.value, 0.3127, 1e-3);
+  EXPECT_NEAR(fit->phase_rad, 0.4, 1e-3);
+}
+
 TEST(FitClocks, SaysThatTooLittleTimeIsShared) {
   const Drive brief{{0.0, 0.0}, {{0.5, 60 * rpm}}};
   const Seen first(brief, 0.0, 0.0, 0.0, 1), second(brief, 0.0, 0.0, 0.0, 2);
