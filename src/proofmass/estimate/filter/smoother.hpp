@@ -40,37 +40,36 @@ void there_and_back(
     forward(k, std::as_const(now));
   }
   const std::size_t chunks = starts.size();
-  std::array<std::vector<Step>, 2> steps;
-  const auto rerun = [&](std::size_t c) {
+  const auto rerun = [&](std::size_t c, std::vector<Step>& steps) {
     const std::size_t first = c * chunk, last = std::min(first + chunk, size);
-    for (std::size_t k = first; k < last; ++k) advance(starts[c], k, steps[c % 2][k - first]);
+    for (std::size_t k = first; k < last; ++k) advance(starts[c], k, steps[k - first]);
   };
-  const auto go_back = [&](std::size_t c) {
+  const auto go_back = [&](std::size_t c, const std::vector<Step>& steps) {
     const std::size_t first = c * chunk, last = std::min(first + chunk, size);
-    for (std::size_t k = last; k-- > first;) backward(k, std::as_const(steps[c % 2][k - first]));
+    for (std::size_t k = last; k-- > first;) backward(k, steps[k - first]);
   };
   if (size < worth_a_thread) {
-    for (auto& of_chunk : steps) of_chunk.resize(std::min(chunk, size));
+    std::vector<Step> steps(std::min(chunk, size));
     for (std::size_t c = chunks; c-- > 0;) {
-      rerun(c);
-      go_back(c);
+      rerun(c, steps);
+      go_back(c, steps);
     }
     return;
   }
-  for (auto& of_chunk : steps) of_chunk.resize(chunk);
-  std::counting_semaphore<> free(2), ready(0);  // of the steps of two chunks
+  std::array steps{std::vector<Step>(chunk), std::vector<Step>(chunk)};  // of even and odd chunks
+  std::counting_semaphore<> free(2), ready(0);
   const std::jthread ahead([&](const std::stop_token& stop) {
     const std::stop_callback wake(stop, [&] { free.release(); });
     for (std::size_t c = chunks; c-- > 0;) {
       free.acquire();
       if (stop.stop_requested()) return;
-      rerun(c);
+      rerun(c, steps[c % 2]);
       ready.release();
     }
   });
   for (std::size_t c = chunks; c-- > 0;) {
     ready.acquire();
-    go_back(c);
+    go_back(c, steps[c % 2]);
     free.release();
   }
 }
