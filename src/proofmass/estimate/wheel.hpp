@@ -156,7 +156,8 @@ struct WheelSolution {
 };
 
 /// Angle, speed and acceleration of a wheel from one or two accelerometers anywhere on it, with the
-/// sensors' biases, scales, radii and mounting angles as far as they are observable.
+/// sensors' biases, scales, radii and mounting angles as far as they are observable. The memory of
+/// two sensors is freed as soon as they are merged: move long ones.
 ///
 /// Errors: invalid_argument (no sensor, unequal lengths, an axis of length 0, non-ascending time),
 /// too_few_samples, not_observable (no spin axis can be found, or gravity does not rotate with the

@@ -7,6 +7,7 @@
 #include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/wheel/coarse_fit.hpp"
 #include "proofmass/estimate/wheel/colour.hpp"
 #include "proofmass/estimate/wheel/doubts.hpp"
 #include "proofmass/estimate/wheel/encoder.hpp"
@@ -141,7 +142,8 @@ WheelFit smooth_at_places(const WheelReadings& readings,
   WheelFit fit;
   resize(fit.series, size);
   fit.series.time_s = readings.time_s;
-  fit.track = {settled.prior.beginning, settled.noise, about, true, 0.0};
+  fit.track = {
+      .beginning = settled.prior.beginning, .noise = settled.noise, .path = about, .tuned = true};
   const auto prior = prior_state<S>(settled.prior);
   Gaussian<wheel::states(S)> end = prior.x;
   ConsistencyCheck check({.channels = std::vector<std::string>(channels_of(model)),
@@ -202,7 +204,8 @@ WheelFit constants_at_places(const WheelReadings& readings,
                              const Settled<S>& settled,
                              const WheelPath& about) {
   WheelFit fit;
-  fit.track = {settled.prior.beginning, settled.noise, about, true, 0.0};
+  fit.track = {
+      .beginning = settled.prior.beginning, .noise = settled.noise, .path = about, .tuned = true};
   auto state = prior_state<S>(settled.prior);
   LostShare lost(readings.gravity_mps2);
   const auto model = held_model<S>(readings, settled.noise, about);
@@ -266,53 +269,6 @@ void add_rounding(const WheelReadings& readings, WheelFit& fit) {
   for (int i = 0; i < wheel::encoder_states - 1; ++i)
     fit.constants_cov(first + 1 + i, first + 1 + i) +=
         square(more_rad[static_cast<std::size_t>(i)]);
-}
-
-/// Turn of the wheel during an average of measurements. On a road longer averages hide vibration,
-/// which an encoder's errors resemble, too; on a bench the model of an average is accurate to 2e-5
-/// m/s² over long_average_rad.
-constexpr double average_rad = 0.05, long_average_rad = 0.25;
-
-/// Number of measurements to average for every pass but the last ones: those of average_rad or, in
-/// a long recording, as many as leave `enough` averages, but no more than those of `most_rad`.
-std::size_t averaging_factor(const WheelReadings& readings,
-                             const WheelTrack& track,
-                             double most_rad) {
-  constexpr double enough = 20'000.0;
-  double fastest_radps = 1e-9;
-  for (const Mat<wheel::moving>& at : track.path.moving)
-    fastest_radps = std::max(fastest_radps, std::abs(at(wheel::speed)));
-  const auto epochs = static_cast<double>(readings.epochs.size());
-  const double step_rad = fastest_radps / readings.rate_hz();
-  const double angle_rad = std::clamp(step_rad * epochs / enough, average_rad, most_rad);
-  // A short recording keeps at least 50 averages.
-  const double most = std::clamp(epochs / 50.0, 1.0, 64.0);
-  return static_cast<std::size_t>(std::clamp(angle_rad / step_rad, 1.0, most));
-}
-
-/// A track of the averaged measurements, on the time line of all of them.
-WheelTrack spread_track(const WheelTrack& track,
-                        const WheelReadings& averaged,
-                        const WheelReadings& readings) {
-  WheelTrack out = track;
-  out.path.moving = moving_at(readings.time_s, averaged.time_s, track.path.moving);
-  return out;
-}
-
-/// Assigns each measurement the estimated variance of its average, times the averaging factor.
-void spread_variance(const WheelReadings& averaged, std::size_t each, WheelReadings& readings) {
-  for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
-    readings.sensors[s].speed_variance =
-        static_cast<double>(each) * averaged.sensors[s].speed_variance;
-    for (std::size_t k = 0; k < readings.epochs.size(); ++k) {
-      const std::int64_t row = readings.epochs[k].row[s];
-      const std::int64_t block = averaged.epochs[k / each].row[s];
-      if (row == WheelEpoch::no_row || block == WheelEpoch::no_row) continue;
-      readings.sensors[s].variance_m2ps4[static_cast<std::size_t>(row)] =
-          static_cast<double>(each) *
-          averaged.sensors[s].variance_m2ps4[static_cast<std::size_t>(block)];
-    }
-  }
 }
 
 /// If the angular acceleration of a vehicle's wheel varies within a turn, as by the pushes of a
@@ -380,37 +336,6 @@ void widen_at_rest(const WheelReadings& readings, WheelFit& fit) {
                 std_of(by_constants(series.angle_rad.size() - 1) - by_constants(0)) / rad_per_turn);
 }
 
-/// Passes on averages of `each` measurements.
-template <int S>
-struct CoarseFit {
-  std::size_t each = 1;
-  WheelReadings readings;
-  WheelTrack track;
-  Settled<S> settled;
-};
-
-template <int S>
-CoarseFit<S> settle_on_averages(const WheelReadings& readings,
-                                const WheelTrack& track,
-                                const PlacesPrior& belief,
-                                FitDepth depth,
-                                const Progress& progress) {
-  const bool alone = S == 1 && depth != FitDepth::track;
-  const int rounds = (alone ? 4 : 2) / (depth == FitDepth::again ? 2 : 1);
-  const auto on_averages = [&](std::size_t each) {
-    CoarseFit<S> fit{each, averaged(readings, each), {}, {}};
-    fit.track = spread_track(track, readings, fit.readings);
-    fit.settled = settle_rounds<S>(fit.readings, fit.track, belief, rounds, progress);
-    return fit;
-  };
-  const std::size_t each = averaging_factor(readings, track, average_rad);
-  const std::size_t most =
-      readings.encoder ? each : averaging_factor(readings, track, long_average_rad);
-  CoarseFit<S> fit = on_averages(most);
-  if (fit.readings.shakes && most > each) return on_averages(each);
-  return fit;
-}
-
 template <int S>
 WheelFit fit_sensors(WheelReadings& readings,
                      WheelTrack track,
@@ -436,7 +361,6 @@ WheelFit fit_sensors(WheelReadings& readings,
   WheelFit fit;
   if (depth == FitDepth::constants) {
     fit = constants_at_places(coarse, settled, coarse_track.path);
-    fit.track.path.moving = std::move(track.path.moving);
   } else {
     settle_variance(held_model<S>(readings, settled.noise, track.path), settled.prior, readings);
     fit = smooth_at_places(readings, settled, track.path, known, progress);
@@ -449,7 +373,10 @@ WheelFit fit_sensors(WheelReadings& readings,
   add_held_figures(settled, coarse, coarse_track.path, readings, track.path, fit);
   add_gravity_uncertainty<S>(readings, settled.places_cov * positive_inverse(belief.cov), fit);
   add_hub_bursts(readings, track.path, fit);
-  if (depth == FitDepth::constants) return fit;
+  if (depth == FitDepth::constants) {
+    fit.track.path.moving = std::move(track.path.moving);
+    return fit;
+  }
   widen_at_rest<S>(readings, fit);
   if (readings.encoder) {
     add_nonlinearity<S>(readings.encoder->nonlinearity, fit);
@@ -479,21 +406,6 @@ void assume_rolling_radius(WheelReadings& readings) {
   if (readings.found_rolling_radius_m)
     readings.rolling_radius_m =
         combined(readings.rolling_radius_m, *readings.found_rolling_radius_m);
-}
-
-std::vector<Mat<wheel::moving>> moving_at(const std::vector<double>& time_s,
-                                          const std::vector<double>& path_time_s,
-                                          const std::vector<Mat<wheel::moving>>& path) {
-  std::vector<Mat<wheel::moving>> moving;
-  moving.reserve(time_s.size());
-  std::size_t at = 0;
-  for (const double t : time_s) {
-    while (at + 1 < path_time_s.size() &&
-           std::abs(path_time_s[at + 1] - t) <= std::abs(path_time_s[at] - t))
-      ++at;
-    moving.push_back(constant_jerk(t - path_time_s[at]) * path[at]);
-  }
-  return moving;
 }
 
 WheelFit fit_wheel(WheelReadings& readings,

@@ -77,12 +77,6 @@ struct WheelTrack {
   double lost = 1.0;   ///< share of unexplained measurements, 0 … 1
 };
 
-/// A path at other, rising times: from its nearest epoch, with constant jerk.
-[[nodiscard]] std::vector<Mat<wheel::moving>> moving_at(
-    const std::vector<double>& time_s,
-    const std::vector<double>& path_time_s,
-    const std::vector<Mat<wheel::moving>>& path);
-
 /// Eight measurements a turn: the limit of the search and of the result.
 [[nodiscard]] constexpr double fastest_radps(double rate_hz) {
   return rate_hz * rad_per_turn / 8.0;

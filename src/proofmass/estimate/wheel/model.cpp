@@ -1,7 +1,9 @@
 #include "proofmass/estimate/wheel/model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "proofmass/core/units.hpp"
 
@@ -15,6 +17,21 @@ std::size_t turned_after(const WheelPath& path, std::size_t first) {
   const auto from = path.moving.begin() + static_cast<std::ptrdiff_t>(first);
   return static_cast<std::size_t>(std::find_if(from, path.moving.end(), is_away) -
                                   path.moving.begin());
+}
+
+std::vector<Mat<wheel::moving>> moving_at(const std::vector<double>& time_s,
+                                          const std::vector<double>& path_time_s,
+                                          const std::vector<Mat<wheel::moving>>& path) {
+  std::vector<Mat<wheel::moving>> moving;
+  moving.reserve(time_s.size());
+  std::size_t at = 0;
+  for (const double t : time_s) {
+    while (at + 1 < path_time_s.size() &&
+           std::abs(path_time_s[at + 1] - t) <= std::abs(path_time_s[at] - t))
+      ++at;
+    moving.push_back(constant_jerk(t - path_time_s[at]) * path[at]);
+  }
+  return moving;
 }
 
 template void advance_in_place(const WheelModel<1>&,

@@ -117,6 +117,12 @@ inline constexpr double standing_stretch_s = 0.5, standing_speed_radps = 0.05;
   return F;
 }
 
+/// A path at other, rising times: from its nearest epoch, with constant jerk.
+[[nodiscard]] std::vector<Mat<wheel::moving>> moving_at(
+    const std::vector<double>& time_s,
+    const std::vector<double>& path_time_s,
+    const std::vector<Mat<wheel::moving>>& path);
+
 template <int Sensors>
 struct WheelModel {
   static constexpr int sensors_used = Sensors;

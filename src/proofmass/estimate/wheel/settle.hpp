@@ -1,5 +1,6 @@
 #pragma once
 
+#include "proofmass/core/contract.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
 
 // Alternating estimation of noise, ripple, lever arms and path of a wheel.
@@ -21,6 +22,7 @@ template <int S>
 [[nodiscard]] WheelModel<S> held_model(const WheelReadings& readings,
                                        const WheelNoise& noise,
                                        const WheelPath& about) {
+  PM_EXPECTS(about.moving.size() == readings.epochs.size());
   auto model = wheel_model<S>(readings, noise);
   model.about = &about;
   model.first_turn = turned_after(about, 0);

@@ -134,11 +134,10 @@ WheelTrack seek_track(WheelReadings& readings, std::size_t first) {
     // A filter that follows every vibration predicts slightly better without being better.
     if (traced.lost >= 0.6 * best.lost) continue;
     const Mat<wheel::moving>& at = traced.path.moving.front();
-    best = {{at(wheel::angle), 0.2, at(wheel::speed), beginning.speed_std_radps},
-            seek.noise,
-            std::move(traced.path),
-            false,
-            traced.lost};
+    best = {.beginning = {at(wheel::angle), 0.2, at(wheel::speed), beginning.speed_std_radps},
+            .noise = seek.noise,
+            .path = std::move(traced.path),
+            .lost = traced.lost};
     if (best.lost < clearly_found) break;
   }
   return best;
