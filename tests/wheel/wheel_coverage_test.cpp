@@ -66,6 +66,16 @@ TEST(PushedWheel, HasNoSkewWithoutAnotherMeasurementOfItsMotion) {
   }));
 }
 
+// In a push the filter swings by two radians about the angle, whose smoothed estimate stays right.
+TEST(PushedWheel, IsFollowedWhereTheFilterSwings) {
+  for (const std::uint64_t seed : {5001U, 5005U}) {
+    const Estimated found = estimated("pushed", seed);
+    ASSERT_TRUE(found.said && found.said->turns) << seed;
+    const Uncertain& turns = *found.said->turns;
+    EXPECT_LT(std::abs(turns.value - found.recorded.truth.turns), 4.0 * turns.std) << seed;
+  }
+}
+
 // Fitted without the rolling radius, the ripple was ten times too large, and the fit with it let go
 // of the wheel: -2.45 +- 0.04 turns.
 TEST(RipplingWheel, IsFollowedOnAVehicle) {

@@ -28,6 +28,11 @@ inline void add_doubt(std::size_t k,
   doubt.predicted = predicted;
 }
 
+/// Length, number of readings and least share of g of the windows of GravityShown.
+struct GravityWindow {
+  double length_s = 0.5, fewest = 20.0, least_share = 0.65;
+};
+
 /// Whether the measurements show gravity where the filter predicts it, or the smoother puts it, by
 /// windows of half a second: their component along that direction is g on average, whatever the
 /// vibration, and nearly 0 if the phase is lost. Then the innovations count as noise, so that
@@ -40,15 +45,15 @@ class GravityShown {
 
   GravityShown(const WheelModel<S>& model,
                const WheelReadings& readings,
-               std::vector<WheelDoubt>& doubts)
-      : model_(model), readings_(readings), doubts_(doubts) {
+               std::vector<WheelDoubt>& doubts,
+               const GravityWindow& window = {})
+      : model_(model), readings_(readings), doubts_(doubts), window_(window) {
     // What the measurements would be at the state itself; about a path from which the state has
     // slipped they are always as predicted.
     model_.about = nullptr;
   }
 
   void add(std::size_t k, const State& at) {
-    constexpr double window_s = 0.5, fewest = 20.0, shown = 0.65;
     if (model_.with_gyro || model_.encoder != nullptr) return;
     model_.measure(at, k, rows_);
     std::size_t next = 0;
@@ -62,9 +67,11 @@ class GravityShown {
       count_ += 1.0;
       next += 2;
     }
-    if (readings_.time_s[k] - readings_.time_s[first_] < window_s || count_ < fewest) return;
+    if (readings_.time_s[k] - readings_.time_s[first_] < window_.length_s ||
+        count_ < window_.fewest)
+      return;
     const double share = 1.0 + along_mps2_ / count_ / model_.gravity_mps2;
-    if (first_ > 0 && share < shown) doubt(k);
+    if (first_ > 0 && share < window_.least_share) doubt(k);
     first_ = k + 1;
     along_mps2_ = count_ = 0.0;
   }
@@ -82,22 +89,38 @@ class GravityShown {
   WheelModel<S> model_;
   const WheelReadings& readings_;
   std::vector<WheelDoubt>& doubts_;
+  GravityWindow window_;
   Readings<wheel::states(S), WheelModel<S>::channels> rows_;
   std::size_t first_ = 0;
   double along_mps2_ = 0.0, count_ = 0.0;
 };
 
-/// Adds the intervals in which the smoothed motion does not show gravity.
+/// Adds the intervals in which the smoothed motion does not show gravity, and those of `unseen`, in
+/// which the predicted does not, unless the smoothed does at every moment of them: a filter that
+/// takes the acceleration of a pushed hub for one of the wheel swings about the right angle without
+/// losing a turn, while an angle that slips by a turn passes every direction.
 template <int S>
 void doubt_smoothed(const WheelModel<S>& model,
                     const WheelReadings& readings,
                     Gaussian<wheel::states(S)> end,
+                    const std::vector<WheelDoubt>& unseen,
                     WheelFit& fit) {
-  std::vector<WheelDoubt> doubts;
-  GravityShown<S> gravity(model, readings, doubts);
+  constexpr GravityWindow brief{.length_s = 0.1, .fewest = 10.0, .least_share = 0.5};
+  constexpr double margin_s = 0.5;
+  std::vector<WheelDoubt> doubts, moments;
+  GravityShown<S> gravity(model, readings, doubts), in_moments(model, readings, moments, brief);
   for (std::size_t k = 0; k < model.size(); ++k) {
     end.mean.template head<wheel::moving>() = fit.track.path.moving[k];
     gravity.add(k, end.mean);
+    if (!unseen.empty()) in_moments.add(k, end.mean);
+  }
+  for (const WheelDoubt& doubt : unseen) {
+    const double from_s = readings.time_s[doubt.first] - margin_s;
+    const double to_s = readings.time_s[doubt.last] + margin_s;
+    if (std::ranges::any_of(moments, [&](const WheelDoubt& moment) {
+          return readings.time_s[moment.last] > from_s && readings.time_s[moment.first] < to_s;
+        }))
+      doubts.push_back(doubt);
   }
   if (doubts.empty()) return;
   doubts.insert(doubts.end(), fit.doubts.begin(), fit.doubts.end());

@@ -151,7 +151,8 @@ WheelFit smooth_at_places(const WheelReadings& readings,
                           .gate = wheel_gate.limit});
   AngleColour<S> colour;
   LostShare lost(readings.gravity_mps2);
-  GravityShown<S> gravity(model, readings, fit.doubts);
+  std::vector<WheelDoubt> unseen;
+  GravityShown<S> gravity(model, readings, unseen);
   const auto report = [&](std::string_view stage, std::size_t done) {
     if (progress && done % 65536 == 0)
       progress(stage, static_cast<double>(done) / static_cast<double>(size));
@@ -181,7 +182,7 @@ WheelFit smooth_at_places(const WheelReadings& readings,
   };
   run_tasks(size,
             {there_and_back, [&] { filter_calibrated(model, settled.prior, known, fit.series); }});
-  doubt_smoothed(model, readings, end, fit);
+  doubt_smoothed(model, readings, end, unseen, fit);
   fit.track.lost = lost.share();
   fit.consistency = check.judge();
   take_constants(end, settled, fit);
