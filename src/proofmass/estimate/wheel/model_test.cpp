@@ -352,6 +352,29 @@ TEST(WheelModel, AboutAPathARippleKeepsThePredictedAngle) {
     EXPECT_NEAR(about.rows[i].predicted, exact.rows[i].predicted, 1e-4);
 }
 
+TEST(WheelModel, FarFromAPathTheMotionEntersLinearly) {
+  Normal normal(8);
+  OneEpoch<1> epoch(0.0, 0.0);
+  State<1> x = any_state<1>(normal);
+  WheelPath path;
+  path.moving.push_back(x.head<wheel::moving>());
+  path.standing = x.tail<wheel::standing(1)>();
+  const auto on_path = epoch.at(x);
+  const auto predicted = [&](double off_rad, bool about) {
+    State<1> off = x;
+    off(wheel::angle) += off_rad;
+    epoch.model.about = about ? &path : nullptr;
+    return epoch.at(off);
+  };
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& row = on_path.rows[i];
+    EXPECT_NEAR(predicted(0.05, true).rows[i].predicted, predicted(0.05, false).rows[i].predicted,
+                1e-12);
+    EXPECT_NEAR(predicted(0.3, true).rows[i].predicted, row.predicted + 0.3 * row.h(wheel::angle),
+                1e-12);
+  }
+}
+
 // Measurements through a delay τ equal those of an undelayed wheel τ earlier, except for the
 // attenuation of rotating components.
 TEST(WheelModel, ADelayShowsTheMotionOfEarlier) {
