@@ -91,7 +91,7 @@ std::string sentence(const Eigen::VectorXd& direction,
                      const std::vector<WheelSensorFit>& sensors,
                      const WheelFit& fit) {
   std::vector<std::string> names;
-  bool place = false, bias = false, shape = true;
+  bool place = false, bias = false;
   std::size_t sensor = sensors.size();
   bool one_sensor = true;
   const auto share = [&](std::size_t i) {
@@ -107,7 +107,6 @@ std::string sentence(const Eigen::VectorXd& direction,
     names.push_back(name_of(constants[i]));
     place = place || constants[i].kind == Kind::place;
     bias = bias || constants[i].kind == Kind::bias;
-    shape = shape && (constants[i].kind == Kind::scale || constants[i].kind == Kind::skew);
     one_sensor = one_sensor && (sensor == sensors.size() || sensor == constants[i].sensor);
     sensor = constants[i].sensor;
   }
@@ -117,11 +116,6 @@ std::string sentence(const Eigen::VectorXd& direction,
            " are not separable at one speed (ω²R): record a second speed";
   const std::string what = joined(names) + " of " + whose;
   if (place && bias) return what + " are not separable at one speed: record a second speed";
-  constexpr double strong_bursts = 0.01;
-  if (shape && fit.hub_bursts > strong_bursts)
-    return what +
-           " cannot be separated from the acceleration of the vehicle, which changes within a "
-           "turn: record a gyroscope or an encoder too, or turn the wheel on a stand";
   if (place)
     return what + " does not show at this speed: the centripetal force is too small; turn faster";
   return what + (names.size() > 1 ? " are not separable" : " is not identifiable") +

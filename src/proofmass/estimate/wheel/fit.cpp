@@ -272,37 +272,6 @@ void add_rounding(const WheelReadings& readings, WheelFit& fit) {
         square(more_rad[static_cast<std::size_t>(i)]);
 }
 
-/// If the angular acceleration of a vehicle's wheel varies within a turn, as by the pushes of a
-/// hand, the hub's acceleration ρ α, horizontal, lengthens the measured force by (ρ α)²/2g,
-/// whichever its sign. Without another measurement of the motion the filter estimates α from the
-/// same measurements, and what it leaves of this resembles scales and a skew, without trace in the
-/// residuals. Added is the whole effect, of the variation of α about its mean over each turn.
-void add_hub_bursts(const WheelReadings& readings, const WheelPath& path, WheelFit& fit) {
-  const bool has_speed = std::ranges::any_of(
-      readings.sensors, [](const PlanarReadings& one) { return !one.speed_radps.empty(); });
-  if (has_speed || readings.encoder) return;
-  Moments within;
-  for (std::size_t from = 0, k = 0; k < path.moving.size(); ++k) {
-    const double turned = path.moving[k](wheel::angle) - path.moving[from](wheel::angle);
-    if (std::abs(turned) < rad_per_turn) continue;
-    Moments turn;
-    for (std::size_t i = from; i < k; ++i) turn.add(path.moving[i](wheel::accel));
-    for (std::size_t i = from; i < k; ++i) within.add(path.moving[i](wheel::accel) - turn.mean);
-    from = k;
-  }
-  const Uncertain& rolling = readings.rolling_radius_m;
-  const double hub_mps2 = (rolling.value + rolling.std) * within.std();
-  fit.hub_bursts = 0.5 * square(hub_mps2 / readings.gravity_mps2);
-  for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
-    const int at = wheel::first_of(static_cast<int>(s)) - wheel::first_of(0);
-    for (const int i : {at + wheel::scale, at + wheel::scale + 1, at + wheel::skew}) {
-      fit.constants_cov(i, i) += square(fit.hub_bursts);
-      fit.constants_widened(i, i) +=
-          std::min(square(fit.hub_bursts), fit.constants_prior_cov(i, i));
-    }
-  }
-}
-
 /// Where the wheel rests, its angle is that of gravity with the errors of bias, scale and skew,
 /// δφ = (cos φ δz_u − sin φ δz_v) / g. Motion averages them over a turn.
 template <int S>
@@ -373,7 +342,6 @@ WheelFit fit_sensors(WheelReadings& readings,
   fit.constants_prior_cov.template bottomRightCorner<2 * S, 2 * S>() = belief.cov;
   add_held_figures(settled, coarse, coarse_track.path, readings, track.path, fit);
   add_gravity_uncertainty<S>(readings, settled.places_cov * positive_inverse(belief.cov), fit);
-  add_hub_bursts(readings, track.path, fit);
   if (depth == FitDepth::constants) {
     fit.track.path.moving = std::move(track.path.moving);
     return fit;

@@ -115,8 +115,6 @@ struct WheelFit {
   Consistency consistency;         ///< channels: along u and v of each sensor, without names
   std::vector<WheelDoubt> doubts;  ///< after the first second
   std::vector<TurnsCandidate> turns_candidates;  ///< if there are doubts
-  /// Error of scales and skew by which the hub's acceleration within a turn can change them.
-  double hub_bursts = 0.0;
   /// Radius of each sensor from the recording alone, if one was given.
   std::vector<Uncertain> free_radius_m;
   std::optional<Uncertain> given_radius_m;  ///< the given radius, as far as it is trusted

@@ -328,8 +328,8 @@ struct WheelModel {
  private:
   /// Whether the measurements are linearised about a predicted motion, not the path's. About
   /// predictions that swing, as on a road or in pushes of a hand, g δ²/2 would become biases and
-  /// scales: 0.4 m/s² at δ = 0.3 rad. A gyroscope or an encoder keeps predictions from swinging, and
-  /// its errors at first make the path's worse.
+  /// scales: 0.4 m/s² at δ = 0.3 rad. A gyroscope or an encoder keeps predictions from swinging,
+  /// and its errors at first make the path's worse.
   [[nodiscard]] bool about_prediction(const State& x, std::size_t k) const {
     const double far_rad = with_gyro || encoder != nullptr ? 0.5 : 0.1;
     const bool far = std::abs(x(wheel::angle) - about->moving[k](wheel::angle)) > far_rad;
