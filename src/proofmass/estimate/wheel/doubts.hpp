@@ -34,10 +34,10 @@ struct GravityWindow {
 };
 
 /// Whether the measurements show gravity where the filter predicts it, or the smoother puts it, by
-/// windows of half a second: their component along that direction is g on average, whatever the
-/// vibration, and nearly 0 if the phase is lost. Then the innovations count as noise, so that
-/// neither they nor the predicted covariance show the loss. A gyroscope or an encoder counts on
-/// meanwhile.
+/// windows of half a second or as given: their component along that direction is g on average,
+/// whatever the vibration, and nearly 0 if the phase is lost. Then the innovations count as noise,
+/// so that neither they nor the predicted covariance show the loss. A gyroscope or an encoder
+/// counts on meanwhile.
 template <int S>
 class GravityShown {
  public:

@@ -1,6 +1,7 @@
 #include "proofmass/estimate/wheel/doubts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include "proofmass/estimate/wheel/settle.hpp"
