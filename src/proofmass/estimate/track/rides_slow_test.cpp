@@ -19,7 +19,7 @@ constexpr double degree = std::numbers::pi / 180.0;
 struct Kind {
   std::string name;
   std::function<Ride(Draw&)> make;
-  double least_given = 0.9, least_held = 0.9;
+  double least_given = 0.9, least_held = 0.93;
 
   friend std::ostream& operator<<(std::ostream& out, const Kind& kind) { return out << kind.name; }
 };
@@ -27,13 +27,13 @@ struct Kind {
 class TrackRides : public testing::TestWithParam<Kind> {};
 
 TEST_P(TrackRides, HoldTheTruthOrGiveNoFigure) {
-  constexpr int recordings = 100;
+  constexpr int recordings = 400;
   const rides::Held held = rides::held_by(GetParam().make, 7000, recordings);
   std::printf("| %s | %d | %.0f %% | %.1f | %.3g m |\n", GetParam().name.c_str(), held.given,
               100.0 * held.share(), held.largest, held.rms_m());
   EXPECT_GE(held.given, GetParam().least_given * recordings);
   EXPECT_GE(held.share(), GetParam().least_held);
-  EXPECT_LE(held.wrong, 1);
+  EXPECT_EQ(held.wrong, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -42,9 +42,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Kind{"lift, no vibration", [](Draw& draw) { return rides::lift(draw, 1, 0.0); }},
         Kind{"lift, vibration as the noise", [](Draw& draw) { return rides::lift(draw, 1, 1.0); }},
-        // Few closures do not determine whether vibration in motion is white: 89 %.
-        Kind{"lift, vibration 3 times", [](Draw& draw) { return rides::lift(draw, 1, 3.0); }, 0.9,
-             0.82},
+        Kind{"lift, vibration 3 times", [](Draw& draw) { return rides::lift(draw, 1, 3.0); }},
         Kind{"three rides of a lift", [](Draw& draw) { return rides::lift(draw, 3, 0.0); }},
         Kind{"cart at constant speed", rides::cart},
         Kind{"begun under way", rides::begun_under_way, 0.0},

@@ -219,7 +219,9 @@ bool end_departs(View<View<double>> axes,
 
 // Next to motion a rest ends where the motion becomes visible, a block at a time: a non-zero
 // velocity there is that of the whole motion.
-signal::Rest without_onset(View<View<double>> axes, const RestMeans& found, signal::Rest rest) {
+signal::Rest without_visible_onset(View<View<double>> axes,
+                                   const RestMeans& found,
+                                   signal::Rest rest) {
   const std::size_t length = found.length, reach = spread_blocks * length;
   const auto is_long = [&] { return rest.last - rest.first + 1 >= 4 * length; };
   while (rest.last + 1 < axes[0].size() && is_long()) {
@@ -235,6 +237,54 @@ signal::Rest without_onset(View<View<double>> axes, const RestMeans& found, sign
     rest.first = to;
   }
   return rest;
+}
+
+// How many samples of a motion it takes until its velocity exceeds ten times that of the noise of a
+// block, in any axis; a block at most. The motion is samples after[0], after[1], … of an axis, in
+// either direction of time.
+template <class After>
+std::size_t samples_until_moving(View<View<double>> axes,
+                                 const RestMeans& found,
+                                 const signal::Rest& rest,
+                                 std::size_t available,
+                                 After after) {
+  constexpr double far = 10.0;
+  std::size_t until = found.length;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const double level = mean_of(axes[a].subspan(rest.first, rest.last - rest.first + 1));
+    const double limit = far * found.std[a] * static_cast<double>(found.length);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < std::min(until, available); ++i) {
+      const double value = axes[a][after(i)];
+      if (std::isfinite(value)) sum += value - level;
+      if (std::abs(sum) > limit) until = i;
+    }
+  }
+  return until;
+}
+
+// A motion that begins slowly is hidden in the noise at first: with a quadratic rise, for about as
+// long as it then takes to reach several times its velocity. A rest that includes this would have
+// velocity 0 where the sensor moves.
+signal::Rest without_onset(View<View<double>> axes, const RestMeans& found, signal::Rest rest) {
+  rest = without_visible_onset(axes, found, rest);
+  const std::size_t length = found.length, count = rest.last - rest.first + 1;
+  const std::size_t reach = spread_blocks * length, resolved = length / 4;  // of find_rests()
+  const auto hidden = [&](std::size_t until) {
+    return std::min(count / 3, until - std::min(until, resolved));
+  };
+  signal::Rest kept = rest;
+  if (const std::size_t after = axes[0].size() - 1 - rest.last; after > 0) {
+    const signal::Rest end{std::max(rest.first, rest.last - std::min(rest.last, reach)), rest.last};
+    kept.last -= hidden(samples_until_moving(axes, found, end, after,
+                                             [&](std::size_t i) { return rest.last + 1 + i; }));
+  }
+  if (rest.first > 0) {
+    const signal::Rest begin{rest.first, std::min(rest.last, rest.first + reach)};
+    kept.first += hidden(samples_until_moving(axes, found, begin, rest.first,
+                                              [&](std::size_t i) { return rest.first - 1 - i; }));
+  }
+  return kept;
 }
 
 }  // namespace
@@ -272,6 +322,13 @@ std::vector<signal::Rest> steady_parts(View<View<double>> axes,
         steady.push_back(without_onset(axes, found, kept));
     }
   }
+  // A stretch that begins and ends slowly and is hardly longer than that may be a slow motion whose
+  // acceleration vanishes, or cancels gravity on a slope, for a moment.
+  const double least = 0.95 * shortest_s * rate_hz - 1.0;  // find_rests() rounds its blocks down
+  std::erase_if(steady, [&](const signal::Rest& rest) {
+    return rest.first > 0 && rest.last + 1 < axes[0].size() &&
+           static_cast<double>(rest.last - rest.first + 1) < least;
+  });
   return steady;
 }
 

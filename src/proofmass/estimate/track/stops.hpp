@@ -30,6 +30,9 @@ struct Stops {
 /// acceleration. Here the level may change between blocks of a quarter of a second by five times
 /// the value of the steadiest fiftieth of all rests, or of white noise; of the parts of one rest,
 /// those with the most frequent level count. A drifting level costs a rest, never a motion.
+///
+/// Next to motion a rest is shortened by the time in which a slow onset is hidden in the noise. An
+/// interval between motions of which less than `shortest_s` then remains is no rest.
 [[nodiscard]] std::vector<signal::Rest> steady_parts(View<View<double>> axes,
                                                      const std::vector<signal::Rest>& rests,
                                                      double rate_hz,

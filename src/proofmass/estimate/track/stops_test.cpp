@@ -74,5 +74,47 @@ TEST(SteadyParts, TheOnsetOfAMotionIsTakenOffTheEnd) {
   EXPECT_GE(parts[0].last, 849U);
 }
 
+// Adds jerk · t³ / (6 s) from begin_s to end_s: an acceleration that begins imperceptibly.
+void add_rise(std::vector<double>& axis, double begin_s, double end_s, double jerk_mps3) {
+  for (std::size_t k = 0; k < axis.size(); ++k) {
+    const double t = static_cast<double>(k) / rate_hz - begin_s;
+    if (t > 0.0 && t < end_s - begin_s) axis[k] += jerk_mps3 * t * t * t / 6.0;
+  }
+}
+
+// In the first 0.2 s the acceleration is at most an eighth of the noise, yet a velocity of 0 at
+// the end of that would be off by a tenth of a millimetre per second for the whole motion.
+TEST(SteadyParts, AHiddenOnsetIsTakenOffTheEnd) {
+  std::vector<double> axis = at_rest(20.0);
+  add_rise(axis, 9.8, 12.0, 2.0);
+  const auto parts = steady(axis, {{0, 999}});
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_LE(parts[0].last, 985U);
+  EXPECT_GE(parts[0].last, 950U);
+}
+
+TEST(SteadyParts, ASuddenMotionLeavesTheRestWhole) {
+  std::vector<double> axis = at_rest(20.0);
+  for (std::size_t k = 1000; k < 1100; ++k) axis[k] += 3.0;
+  const auto parts = steady(axis, {{0, 999}, {1100, 1999}});
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].last, 999U);
+  EXPECT_EQ(parts[1].first, 1100U);
+}
+
+// For half a second the acceleration of a slow motion is within the noise.
+TEST(SteadyParts, AShortStretchBetweenSlowMotionsIsNoRest) {
+  std::vector<double> axis = at_rest(20.0), sudden = axis;
+  const auto bend = [](std::size_t k) {
+    const double t = (static_cast<double>(k) - 1000.0) / rate_hz;
+    return 0.5 * t * t * t;
+  };
+  for (std::size_t k = 850; k < 1150; ++k) axis[k] += bend(k);
+  for (std::size_t k = 850; k < 1150; ++k) sudden[k] += k >= 970 && k < 1030 ? 0.0 : 1.0;
+  const std::vector<signal::Rest> rests{{0, 700}, {970, 1029}, {1300, 1999}};
+  EXPECT_EQ(steady(axis, rests).size(), 2U);
+  EXPECT_EQ(steady(sudden, rests).size(), 3U);
+}
+
 }  // namespace
 }  // namespace proofmass::estimate::track_stops_test
