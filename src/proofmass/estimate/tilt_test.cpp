@@ -405,5 +405,33 @@ TEST(TiltModel, HasTheJacobianOfItsMotion) {
   }
 }
 
+// About smoothed states the Jacobian includes the curvature of the great circle, on which iterated
+// smoothing depends.
+TEST(TiltModel, HasTheJacobianOfAFreeRotation) {
+  const TiltEpochs epochs{.step_s = {0.0, 0.02},
+                          .force_mps2 = {force_at(0.2, 0.1), force_at(0.2, 0.1)},
+                          .rate_radps = {},
+                          .rate_at_radps = {},
+                          .resting = {0, 0},
+                          .accel_cov_m2ps4 = {Mat<3, 3>::Identity(), Mat<3, 3>::Identity()}};
+  TiltModel model(epochs, {}, {.gyroscope = false, .drive = 1.0, .accel_time_s = 0.1});
+  model.linearise_about_smoothed();
+  for (const double speed : {1e-3, 1.0, 20.0}) {  // m/s³: the series for slow rotations, and beyond
+    const Mat<3> g = force_at(0.2, 0.1);
+    Mat<9> x;
+    x << g, 0.3, -0.4, 0.2, speed * Mat<3>(g(1), -g(0), 0.0).normalized();
+    const Mat<9, 9> F = model.transition(x, 1).F;
+    for (int i = 0; i < 9; ++i) {
+      const Mat<9> h = 1e-5 * Mat<9>::Unit(i);
+      const Mat<9> column =
+          (model.transition(x + h, 1).mean - model.transition(x - h, 1).mean) / 2e-5;
+      EXPECT_NEAR((F.col(i) - column).head<3>().norm(), 0.0, 1e-7) << speed << ' ' << i;
+      EXPECT_NEAR((F.col(i) - column).tail<3>().norm(), 0.0, 1e-7) << speed << ' ' << i;
+      // That of the base's acceleration neglects how its rotation depends on g.
+      EXPECT_NEAR((F.col(i) - column).segment<3>(3).norm(), 0.0, 2e-3) << speed << ' ' << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace proofmass::estimate::tilt_test

@@ -65,13 +65,20 @@ class TiltModel {
   /// Measurements of the accelerometer at an epoch; they come first.
   [[nodiscard]] int accel_readings(std::size_t k) const;
 
+  /// From now on, states to linearise about are smoothed ones. Without gyroscope the exact Jacobian
+  /// of the great circle is used for these: its terms in ġ, taken at a filter's noisy ġ, would add
+  /// false information.
+  void linearise_about_smoothed() { about_smoothed_ = true; }
+
  private:
-  void turn_by_gyroscope(const Mat<9>& x, std::size_t k, Transition<9, 9>& step) const;
-  void turn_freely(const Mat<9>& x, std::size_t k, Transition<9, 9>& step) const;
+  /// Both return the rotation R.
+  Mat<3, 3> turn_by_gyroscope(const Mat<9>& x, std::size_t k, Transition<9, 9>& step) const;
+  Mat<3, 3> turn_freely(const Mat<9>& x, std::size_t k, Transition<9, 9>& step) const;
 
   const TiltEpochs& epochs_;
   TiltKnown known_;
   TiltMotion motion_;
+  bool about_smoothed_ = false;
 };
 
 }  // namespace proofmass::estimate

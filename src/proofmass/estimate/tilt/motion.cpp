@@ -14,7 +14,10 @@ namespace proofmass::estimate {
 namespace {
 
 // Consecutive smoothers, each linearised about the previous path.
-constexpr int gyroscope_passes = 3;
+constexpr int gyroscope_passes = 3, free_passes = 4;
+// Mean squared distance of a smoothed path from the filter's, in the filter's standard deviations,
+// beyond which the iteration has gone astray: at most 1 is expected.
+constexpr double plausible_distance2 = 5.0;
 
 void set(TiltSolution& solution, std::size_t k, const TiltAngles& angles, bool smoothed) {
   TiltSeries& s = solution.series;
@@ -108,6 +111,12 @@ Mat<3> rate_bias_of(const TiltEpochs& epochs, const TiltKnown& known, const Tilt
 
 namespace {
 
+// Gravity given all measurements.
+struct SmoothedUp {
+  Mat<3> mean;
+  Mat<3, 3> cov;
+};
+
 // The filter's results, epoch by epoch.
 class FilterNotes {
  public:
@@ -119,9 +128,11 @@ class FilterNotes {
         model_(model),
         spread_(spread),
         solution_(solution),
-        check_({.channels = {"x", "y", "z"}, .rate_hz = rate_hz(epochs)}) {}
+        check_({.channels = {"x", "y", "z"}, .rate_hz = rate_hz(epochs)}),
+        filtered_(epochs.step_s.size()) {}
 
   void operator()(std::size_t k, const StepOf<TiltModel>& step) {
+    filtered_[k] = {step.filtered.mean.head<3>(), step.filtered.cov.topLeftCorner<3, 3>().trace()};
     set(solution_, k,
         spread_.angles(step.filtered.mean.head<3>(), step.filtered.cov.topLeftCorner<3, 3>()),
         false);
@@ -139,8 +150,22 @@ class FilterNotes {
     if (row > 0 && weight < 0.5) ++solution_.down_weighted;
   }
   [[nodiscard]] Consistency judge() const { return check_.judge(); }
+  /// Mean squared distance of a path from the filter's, in its standard deviations.
+  [[nodiscard]] double distance2(const std::vector<SmoothedUp>& path) const {
+    constexpr double most = 25.0;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < path.size(); ++k)
+      sum +=
+          std::min(most, (path[k].mean - filtered_[k].mean).squaredNorm() / filtered_[k].variance);
+    return sum / static_cast<double>(path.size());
+  }
 
  private:
+  struct Filtered {
+    Mat<3> mean;
+    double variance = 0.0;  // all axes
+  };
+
   static double rate_hz(const TiltEpochs& epochs) {
     const double step_s = median(View<double>(epochs.step_s).subspan(1)).value_or(1.0);
     return step_s > 0.0 ? 1.0 / step_s : 1.0;
@@ -151,6 +176,7 @@ class FilterNotes {
   const ForceSpread& spread_;
   TiltSolution& solution_;
   ConsistencyCheck check_;
+  std::vector<Filtered> filtered_;
 };
 
 // Final results, at the last sample.
@@ -179,40 +205,57 @@ void run_tilt(const TiltEpochs& epochs,
               const TiltOptions& options,
               TiltSolution& solution) {
   TiltMotion& motion = *solution.motion;
-  const TiltModel model(epochs, known, motion);
+  TiltModel model(epochs, known, motion);
   Mat<3> rounding = Mat<3>::Zero();
   for (const TiltRest& rest : solution.rests) rounding = rounding.cwiseMax(rest.rounding_m2ps4);
   const ForceSpread spread(options, rounding);
   motion.log_likelihood = tilt_log_likelihood(epochs, known, motion);
   FilterNotes notes(epochs, model, spread, solution);
   std::vector<Mat<9>> path(model.size()), next(model.size());
-  // Without gyroscope the Jacobian is that of a slow rotation: sufficient for filtering, not for
-  // iteration.
-  const int passes = motion.gyroscope ? gyroscope_passes : 1;
-  const auto progress = [&](int pass) {
-    if (options.progress) options.progress("smoothing", static_cast<double>(pass) / passes);
-  };
-  progress(0);
+  std::vector<SmoothedUp> found(model.size()), best;
+  Gaussian<9> last;
+  double nearest = std::numeric_limits<double>::infinity();
+  const int passes = motion.gyroscope ? gyroscope_passes : free_passes;
   const auto keep = [&](int pass) {
+    if (options.progress) options.progress("smoothing", static_cast<double>(pass) / passes);
     return [&, pass](std::size_t k, const auto& step, const BackwardInformation<9>& later) {
       next[k] = later.mean(step.filtered);
-      if (pass + 1 < passes) return;
-      const Mat<3, 3> cov = later.template cov<3>(step.filtered);
-      set(solution, k, spread.angles(next[k].template head<3>(), cov), true);
-      set_up(solution.series, k, next[k].template head<3>());
-      if (k + 1 == next.size()) set_final(next[k], step.filtered.cov, spread, solution);
+      found[k] = {next[k].template head<3>(), later.template cov<3>(step.filtered)};
+      if (pass > 0) {  // what a pass still changes is uncertain
+        const Mat<3> change = (next[k] - path[k]).template head<3>();
+        found[k].cov += change * change.transpose();
+      }
+      if (k + 1 == next.size()) last.cov = step.filtered.cov;
     };
   };
+  // The last pass; without gyroscope the iteration may go astray: then the pass nearest to the
+  // filter's path.
+  const auto choose = [&] {
+    const double distance = notes.distance2(found);
+    if (!motion.gyroscope && distance > std::max(nearest, plausible_distance2)) return;
+    nearest = distance;
+    best.swap(found);
+    found.resize(best.size());
+    last.mean = next.back();
+  };
   smooth(model, model.start(), tilt_gate, notes, keep(0));
+  choose();
+  model.linearise_about_smoothed();
   for (int pass = 1; pass < passes; ++pass) {
-    progress(pass);
     path.swap(next);
     for (Mat<9>& x : path) x.head<3>() *= known.gravity_mps2 / x.head<3>().norm();
     smooth(
         detail::LinearAbout<TiltModel>{model, path.data()},
         model.start_about(path.front().head<3>()), tilt_gate, [](std::size_t, const auto&) {},
         keep(pass));
+    choose();
   }
+  for (std::size_t k = 0; k < best.size(); ++k) {
+    set(solution, k, spread.angles(best[k].mean, best[k].cov), true);
+    set_up(solution.series, k, best[k].mean);
+  }
+  last.cov.topLeftCorner<3, 3>() = best.back().cov;
+  set_final(last.mean, last.cov, spread, solution);
   solution.consistency = notes.judge();
 }
 
