@@ -283,18 +283,12 @@ MovingBase swung(const Swing& swing, std::uint64_t seed) {
     const double h = 1e-4;
     const Mat<3, 3> W = (attitude(t - h) - attitude(t + h)) / (2.0 * h) * A.transpose();  // [ω]×
     const Mat<3> rate = Mat<3>(W(2, 1), W(0, 2), W(1, 0)) + rate_bias_radps + noise(0.01);
-    out.record.time_s.push_back(t);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      out.record.accel_mps2[i].push_back(force(row));
-      if (swing.gyroscope) out.record.rate_radps[i].push_back(rate(row));
-    }
-    out.up.push_back(up);
+    out.add(t, force, swing.gyroscope ? &rate : nullptr, up);
   }
   return out;
 }
 
-/// Coverage of the direction of gravity, and the largest error over its standard deviation.
+/// Coverage, and the largest error over its standard deviation.
 struct Largest {
   Coverage held;
   double largest = 0.0;
@@ -317,13 +311,10 @@ TEST_P(SwungTilt, ItsBandsHold) {
             .value();
     const TiltSeries& s = solution.series;
     for (std::size_t k = 100; k + 100 < base.up.size(); k += 200) {
-      const Mat<3>& up = base.up[k];
-      const double roll_rad = std::atan2(up.y(), up.z());
-      const double pitch_rad = std::atan2(-up.x(), std::hypot(up.y(), up.z()));
-      smoothed.add(s.roll_rad[k], s.roll_std_rad[k], roll_rad);
-      smoothed.add(s.pitch_rad[k], s.pitch_std_rad[k], pitch_rad);
-      filtered.add(s.filtered_roll_rad[k], s.filtered_roll_std_rad[k], roll_rad);
-      filtered.add(s.filtered_pitch_rad[k], s.filtered_pitch_std_rad[k], pitch_rad);
+      smoothed.add(s.roll_rad[k], s.roll_std_rad[k], base.roll_rad[k]);
+      smoothed.add(s.pitch_rad[k], s.pitch_std_rad[k], base.pitch_rad[k]);
+      filtered.add(s.filtered_roll_rad[k], s.filtered_roll_std_rad[k], base.roll_rad[k]);
+      filtered.add(s.filtered_pitch_rad[k], s.filtered_pitch_std_rad[k], base.pitch_rad[k]);
     }
   }
   std::printf("| %s | %.0f %%, %.1f | %.0f %%, %.1f |\n", GetParam().name,

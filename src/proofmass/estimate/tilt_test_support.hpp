@@ -39,6 +39,19 @@ struct MovingBase {
   TiltRecord record;
   std::vector<Mat<3>> up;  ///< gravity's reaction in sensor axes, m/s²
   std::vector<double> roll_rad, pitch_rad;
+
+  /// Appends an epoch; a rate only with a gyroscope.
+  void add(double time_s, const Mat<3>& force, const Mat<3>* rate, const Mat<3>& g) {
+    record.time_s.push_back(time_s);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      record.accel_mps2[i].push_back(force(row));
+      if (rate != nullptr) record.rate_radps[i].push_back((*rate)(row));
+    }
+    up.push_back(g);
+    roll_rad.push_back(std::atan2(g.y(), g.z()));
+    pitch_rad.push_back(std::atan2(-g.x(), std::hypot(g.y(), g.z())));
+  }
 };
 
 struct MovingOptions {
@@ -102,15 +115,7 @@ inline MovingBase moving_base(const MovingOptions& o, std::uint64_t seed) {
     const Mat<3> f =
         g + (rests ? Mat<3>(Mat<3>::Zero()) : Mat<3>(accel + swayed)) + normals(o.reading_std_mps2);
     const Mat<3> w = error * rate + bias + normals(o.rate_noise_radps_rthz / std::sqrt(h));
-    out.record.time_s.push_back(t);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      out.record.accel_mps2[i].push_back(f(row));
-      if (o.gyroscope) out.record.rate_radps[i].push_back(w(row));
-    }
-    out.up.push_back(g);
-    out.roll_rad.push_back(std::atan2(g.y(), g.z()));
-    out.pitch_rad.push_back(std::atan2(-g.x(), std::hypot(g.y(), g.z())));
+    out.add(t, f, o.gyroscope ? &w : nullptr, g);
   }
   return out;
 }

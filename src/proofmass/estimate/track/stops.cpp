@@ -240,8 +240,8 @@ signal::Rest without_visible_onset(View<View<double>> axes,
 }
 
 // How many samples of a motion it takes until its velocity exceeds ten times that of the noise of a
-// block, in any axis; a block at most. The motion is samples after[0], after[1], … of an axis, in
-// either direction of time.
+// block, in any axis; a block at most, and 0 if the recording ends before. The motion is samples
+// after(0), after(1), … of an axis, in either direction of time.
 template <class After>
 std::size_t samples_until_moving(View<View<double>> axes,
                                  const RestMeans& found,
@@ -249,18 +249,18 @@ std::size_t samples_until_moving(View<View<double>> axes,
                                  std::size_t available,
                                  After after) {
   constexpr double far = 10.0;
-  std::size_t until = found.length;
+  std::size_t until = std::min(available, found.length);
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const double level = mean_of(axes[a].subspan(rest.first, rest.last - rest.first + 1));
     const double limit = far * found.std[a] * static_cast<double>(found.length);
     double sum = 0.0;
-    for (std::size_t i = 0; i < std::min(until, available); ++i) {
+    for (std::size_t i = 0; i < until; ++i) {
       const double value = axes[a][after(i)];
       if (std::isfinite(value)) sum += value - level;
       if (std::abs(sum) > limit) until = i;
     }
   }
-  return until;
+  return until < available || until == found.length ? until : 0;
 }
 
 // A motion that begins slowly is hidden in the noise at first: with a quadratic rise, for about as
@@ -326,7 +326,7 @@ std::vector<signal::Rest> steady_parts(View<View<double>> axes,
   // acceleration vanishes, or cancels gravity on a slope, for a moment.
   const double least = 0.95 * shortest_s * rate_hz - 1.0;  // find_rests() rounds its blocks down
   std::erase_if(steady, [&](const signal::Rest& rest) {
-    return rest.first > 0 && rest.last + 1 < axes[0].size() &&
+    return rest.first >= found.length && rest.last + found.length < axes[0].size() &&
            static_cast<double>(rest.last - rest.first + 1) < least;
   });
   return steady;

@@ -102,6 +102,13 @@ TEST(SteadyParts, ASuddenMotionLeavesTheRestWhole) {
   EXPECT_EQ(parts[1].first, 1100U);
 }
 
+TEST(SteadyParts, WhatIsLeftOfTheRecordingIsNoOnset) {
+  const auto parts = steady(at_rest(20.0), {{3, 1996}});
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].first, 3U);
+  EXPECT_EQ(parts[0].last, 1996U);
+}
+
 // For half a second the acceleration of a slow motion is within the noise.
 TEST(SteadyParts, AShortStretchBetweenSlowMotionsIsNoRest) {
   std::vector<double> axis = at_rest(20.0), sudden = axis;
