@@ -17,10 +17,16 @@ constexpr int epochs = 8;
 
 estimate::test::Stream stream_of(const Recorded& recorded, estimate::LiveWheelOptions& options) {
   estimate::test::Stream stream{recorded.sensors.front().time_s, {}};
-  for (const estimate::WheelSensor& sensor : recorded.sensors) {
+  const auto append = [&](const std::string& name, const auto& axes) {
     const std::size_t at = stream.channels.size();
-    for (const auto& axis : sensor.accel_mps2) stream.channels.push_back(axis);
-    options.sensors.push_back({sensor.name, at, at + 1, at + 2});
+    stream.channels.insert(stream.channels.end(), axes.begin(), axes.end());
+    return Triad{name, at, at + 1, at + 2};
+  };
+  for (const estimate::WheelSensor& sensor : recorded.sensors) {
+    options.sensors.push_back(append(sensor.name, sensor.accel_mps2));
+    options.gyroscopes.push_back(sensor.rate_radps[0].empty()
+                                     ? Triad{}
+                                     : append(sensor.name + " gyroscope", sensor.rate_radps));
   }
   return stream;
 }

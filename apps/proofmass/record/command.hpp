@@ -31,7 +31,9 @@ struct RecordCommand {
   std::string estimate;  ///< wheel, track or tilt; empty: none
   std::string send_to;   ///< address for the estimates: udp:HOST:PORT or unix:PATH; empty: none
   GuideFlags guide;
-  std::optional<double> lag_s, radius_m, bandwidth_hz;
+  std::optional<double> lag_s, radius_m, rolling_radius_m, bandwidth_hz;
+  bool no_gyro = false;
+  std::string rate_unit = "rad/s";  ///< of a gyroscope without a unit
   std::string axis;  ///< axle of the wheel, or direction of the motion
   InputFlags input;  ///< rate, unit, channels, sensors, supply and gravity
   OutputFlags output;

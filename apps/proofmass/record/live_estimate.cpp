@@ -1,5 +1,6 @@
 #include "record/live_estimate.hpp"
 
+#include <fmt/format.h>
 #include <utility>
 
 #include "cli/exit_status.hpp"
@@ -9,6 +10,7 @@
 #include "proofmass/estimate/live_tilt.hpp"
 #include "proofmass/estimate/live_track.hpp"
 #include "proofmass/estimate/live_wheel.hpp"
+#include "proofmass/sensor/calibrated_rates.hpp"
 #include "proofmass/sensor/calibration.hpp"
 
 namespace proofmass::app {
@@ -39,13 +41,45 @@ class Calibrated final : public LiveAnalysis {
   std::unique_ptr<LiveAnalysis> analysis_;
 };
 
-Made make_wheel(const RecordCommand& command, const CalibratedBlocks& samples) {
+/// The gyroscope of an accelerometer, in rad/s; without channels if it has none, or if it is not
+/// to be used.
+Triad gyroscope_of(std::size_t accelerometer,
+                   const RecordCommand& command,
+                   CalibratedBlocks& samples,
+                   std::vector<Note>& notes) {
+  const Triad& triad = samples.accelerometers()[accelerometer].triad;
+  if (command.no_gyro || triad.axes() < 3) return {};
+  const auto channels = find_gyroscope(samples.head(), triad);
+  if (!channels) return {};
+  const Channel& first = samples.head().channels[(*channels)[0]];
+  const sensor::SensorModel* model = sensor_model_of(samples.models(), accelerometer);
+  if (model != nullptr && sensor::is_calibrated(model->gyroscope))
+    notes.push_back({Severity::info, fmt::format("gyroscope {} etc.: calibrated by the sensor file",
+                                                 first.name)});
+  else if (first.unit.quantity != Quantity::angular_rate)
+    notes.push_back({Severity::warning,
+                     fmt::format("{} etc. have no unit: {} is assumed; change it with --rate-unit",
+                                 first.name, command.rate_unit)});
+  const Triad found{first.name + " etc.", (*channels)[0], (*channels)[1], (*channels)[2]};
+  const Status done =
+      samples.add_gyroscope(accelerometer, *channels, *parse_unit(command.rate_unit));
+  if (!done) throw Failure(usage, done.error().message);
+  return found;
+}
+
+Made make_wheel(const RecordCommand& command,
+                CalibratedBlocks& samples,
+                std::vector<Note>& notes) {
   estimate::LiveWheelOptions options;
-  for (const Accelerometer& one : samples.accelerometers()) options.sensors.push_back(one.triad);
+  for (std::size_t k = 0; k < samples.accelerometers().size(); ++k) {
+    options.sensors.push_back(samples.accelerometers()[k].triad);
+    options.gyroscopes.push_back(gyroscope_of(k, command, samples, notes));
+  }
   options.rate_hz = samples.head().time.rate_hz;
   if (command.lag_s) options.lag_s = *command.lag_s;
   options.wheel.gravity_mps2 = gravity_mps2(command.input);
   options.wheel.radius_m = command.radius_m;
+  options.wheel.rolling_radius_m = command.rolling_radius_m;
   options.wheel.bandwidth_hz = command.bandwidth_hz;
   if (!command.axis.empty()) options.wheel.spin_axis = parse_axis(command.axis);
   if (!samples.models().empty()) {
@@ -67,12 +101,12 @@ const Triad& only_accelerometer(const CalibratedBlocks& samples) {
 }
 
 Made make_tilt(const RecordCommand& command,
-               const CalibratedBlocks& samples,
+               CalibratedBlocks& samples,
                std::vector<Note>& notes) {
   estimate::LiveTiltOptions options;
   options.accelerometer = only_accelerometer(samples);
-  if (const auto gyroscope = find_gyroscope(samples.head(), options.accelerometer))
-    options.gyroscope = Triad{"gyroscope", (*gyroscope)[0], (*gyroscope)[1], (*gyroscope)[2]};
+  if (const Triad gyroscope = gyroscope_of(0, command, samples, notes); gyroscope.x)
+    options.gyroscope = gyroscope;
   options.rate_hz = samples.head().time.rate_hz;
   if (command.lag_s) options.lag_s = *command.lag_s;
   options.tilt.gravity_mps2 = uncertain_gravity_mps2(command.input, std::nullopt, notes);
@@ -95,11 +129,11 @@ Made make_track(const RecordCommand& command, const CalibratedBlocks& samples) {
 }
 
 Made make_analysis(const RecordCommand& command,
-                   const CalibratedBlocks& samples,
+                   CalibratedBlocks& samples,
                    std::vector<Note>& notes) {
   if (command.estimate == "tilt") return make_tilt(command, samples, notes);
   if (command.estimate == "track") return make_track(command, samples);
-  return make_wheel(command, samples);
+  return make_wheel(command, samples, notes);
 }
 
 }  // namespace

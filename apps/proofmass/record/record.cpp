@@ -86,12 +86,23 @@ void add_estimate_flags(CLI::App& verb, RecordCommand& command) {
   add("--radius", command.radius_m, "M", "distance of the wheel's sensors from the axle, if known")
       ->check(positive())
       ->needs(estimate);
+  add("--rolling-radius", command.rolling_radius_m, "M",
+      "rolling radius of a vehicle's wheel (0: a bench)")
+      ->check(not_negative())
+      ->needs(estimate);
   add("--bandwidth", command.bandwidth_hz, "HZ",
       "-3 dB bandwidth of the wheel sensors' filter, which delays the angle (default: from the "
       "--sensor file, else unknown)")
       ->check(positive())
       ->needs(estimate);
   add("--axis", command.axis, "AXIS", "axis of the wheel's axle, or of the motion (default: found)")
+      ->needs(estimate);
+  verb.add_flag("--no-gyro", command.no_gyro, "do not use the gyroscope's channels")
+      ->group("Estimate")
+      ->needs(estimate);
+  add("--rate-unit", command.rate_unit, "UNIT",
+      "unit of the gyroscope if the source does not state it: rad/s (default) or deg/s")
+      ->check(CLI::IsMember({"rad/s", "deg/s"}))
       ->needs(estimate);
   add("--procedure", command.guide.procedure, "NAME",
       "guided procedure: tumble, multi-position or static, followed by calibration or noise "

@@ -44,6 +44,8 @@ std::vector<Channel> wheel_columns() {
 std::vector<LiveVector> vectors_of(const LiveWheelOptions& options) {
   std::vector<LiveVector> vectors;
   for (const Triad& sensor : options.sensors) vectors.push_back({sensor});
+  for (const Triad& gyroscope : options.gyroscopes)
+    if (gyroscope.x) vectors.push_back({gyroscope, true});
   return vectors;
 }
 
@@ -53,6 +55,11 @@ Status check(const LiveWheelOptions& options) {
     if (!sensor.x || !sensor.y)
       return Error{Errc::invalid_argument,
                    sensor.name + ": a wheel needs the channels of x and y at least"};
+  if (!options.gyroscopes.empty() && options.gyroscopes.size() != options.sensors.size())
+    return Error{Errc::invalid_argument, "as many gyroscopes as accelerometers are expected"};
+  for (const Triad& gyroscope : options.gyroscopes)
+    if (gyroscope.x && gyroscope.axes() < 3)
+      return Error{Errc::invalid_argument, gyroscope.name + ": a gyroscope needs three channels"};
   return check_live_times({options.rate_hz, options.start_s, options.lag_s, options.most_rate_hz});
 }
 
@@ -209,8 +216,8 @@ class LiveWheel final : public LiveAnalysis {
   void run_from(const LiveWheelStart& start, Rows& out) {
     const double span_s = gathered_.back().time_s - gathered_.front().time_s;
     const double rate_hz = static_cast<double>(gathered_.size() - 1) / span_s;
-    filter_.emplace(start, static_cast<std::size_t>(std::lround(options_.lag_s * rate_hz)),
-                    options_.wheel.alignment_std_rad);
+    filter_.emplace(options_, start,
+                    static_cast<std::size_t>(std::lround(options_.lag_s * rate_hz)));
     double apart_rad = 0.0;  // between the new filter and the output, at the last row
     for (std::size_t k = 0; k < gathered_.size(); ++k) {
       const double time_s = gathered_[k].time_s;

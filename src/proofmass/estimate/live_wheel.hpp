@@ -14,6 +14,9 @@ namespace proofmass::estimate {
 struct LiveWheelOptions {
   /// One or two accelerometers on the wheel, m/s²; without z its x and y lie in the wheel's plane.
   std::vector<Triad> sensors{};
+  /// Gyroscope of each sensor in the same axes, rad/s, without channels where it has none; or
+  /// empty.
+  std::vector<Triad> gyroscopes{};
   /// Gravity, spin axis, radii and alignment as for estimate_wheel(); `clocks_shared` is assumed
   /// true, `rim_radius_m` and `progress` are not used.
   WheelOptions wheel{};

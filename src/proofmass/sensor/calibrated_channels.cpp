@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "proofmass/sensor/calibrated_rates.hpp"
 #include "proofmass/sensor/calibration.hpp"
 
 namespace proofmass::sensor {
@@ -105,11 +106,60 @@ Result<CalibratedBlocks> CalibratedBlocks::make(const Recording& head,
   return out;
 }
 
+const SensorModel* CalibratedBlocks::model_of(std::size_t accelerometer) const {
+  if (models_.empty()) return nullptr;
+  return &models_[models_.size() > 1 ? accelerometer : 0];
+}
+
+Status CalibratedBlocks::add_gyroscope(std::size_t at,
+                                       const std::array<std::size_t, 3>& channels,
+                                       const Unit& unit_if_unknown) {
+  const SensorModel* model = model_of(at);
+  const bool calibrated = model != nullptr && is_calibrated(model->gyroscope);
+  const bool raw = calibrated && reading_unit(model->gyroscope) != "rad/s";
+  Recording& piece = pieces_.front();
+  for (const std::size_t c : channels) {
+    const bool is_rate = units_[c].quantity == Quantity::angular_rate;
+    if (raw && is_rate)
+      return Error{Errc::invalid_argument,
+                   fmt::format("the sensor file calibrates the gyroscope's {}, and channel {} is "
+                               "in {}",
+                               reading_unit(model->gyroscope), piece.channels[c].name,
+                               units_[c].symbol)};
+    if (!raw && !is_rate) units_[c] = unit_if_unknown;
+    head_.channels[c].unit = *parse_unit("rad/s");
+  }
+  if (!calibrated) return Done{};
+  calibrated_gyroscopes_.push_back({at, channels});
+  return calibrate(calibrated_gyroscopes_.back());
+}
+
 Status CalibratedBlocks::to_si() {
   if (Status done = sensor::apply(models_, found_, pieces_); !done) return done;
   for (Channel& channel : pieces_.front().channels)
     if (channel.unit.quantity == Quantity::angular_rate) bring_to_si(channel, "rad/s");
+  for (const Gyroscope& gyroscope : calibrated_gyroscopes_)
+    if (Status done = calibrate(gyroscope); !done) return done;
   return Done{};
+}
+
+/// The values change hands instead of being copied.
+Status CalibratedBlocks::calibrate(const Gyroscope& gyroscope) {
+  std::vector<Channel>& channels = pieces_.front().channels;
+  const Triad& triad = found_[gyroscope.accelerometer].triad;
+  const std::array axes{triad.x, triad.y, triad.z};
+  std::array<std::vector<double>, 3> accel_mps2, rates;
+  const auto exchange = [&] {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (axes[axis]) channels[*axes[axis]].values.edit().swap(accel_mps2[axis]);
+      channels[gyroscope.channels[axis]].values.edit().swap(rates[axis]);
+    }
+  };
+  exchange();
+  Status done =
+      sensor::apply(model_of(gyroscope.accelerometer)->gyroscope, accel_mps2, rates);
+  exchange();
+  return done;
 }
 
 Result<Block> CalibratedBlocks::apply(const Block& raw) {

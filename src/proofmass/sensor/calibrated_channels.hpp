@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -43,6 +44,14 @@ class CalibratedBlocks {
                                                      std::vector<std::size_t> channels,
                                                      std::vector<SensorModel> models);
 
+  /// Makes three channels, as they come out, the gyroscope of accelerometer `at`, calibrated if its
+  /// model has a gyroscope's figures. Channels of an unknown unit are in that of the calibration or,
+  /// without one, in `unit_if_unknown`. Errors: invalid_argument (a calibration of volts or counts
+  /// for channels in a unit of angular rate, and those of apply()).
+  [[nodiscard]] Status add_gyroscope(std::size_t at,
+                                     const std::array<std::size_t, 3>& channels,
+                                     const Unit& unit_if_unknown);
+
   [[nodiscard]] const std::vector<Accelerometer>& accelerometers() const { return found_; }
   [[nodiscard]] const std::vector<SensorModel>& models() const { return models_; }
   /// The channels as they come out, without values.
@@ -52,14 +61,22 @@ class CalibratedBlocks {
   [[nodiscard]] Result<Block> apply(const Block& raw);
 
  private:
+  struct Gyroscope {
+    std::size_t accelerometer = 0;
+    std::array<std::size_t, 3> channels{};
+  };
+
   CalibratedBlocks() = default;
+  [[nodiscard]] const SensorModel* model_of(std::size_t accelerometer) const;
   [[nodiscard]] Status to_si();
+  [[nodiscard]] Status calibrate(const Gyroscope& gyroscope);
 
   std::vector<SensorModel> models_;
   std::vector<std::size_t> channels_;
   std::vector<Unit> units_;        ///< in which they come
   std::vector<Recording> pieces_;  ///< one: the current block
   std::vector<Accelerometer> found_;
+  std::vector<Gyroscope> calibrated_gyroscopes_;
   Recording head_;
 };
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "proofmass/core/statistics.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -16,8 +19,10 @@ constexpr double rival_factor = 3.1622776601683795;
 /// A smoothed mean NIS beyond this is significant: the motion exceeds the noise model.
 constexpr double surprising = 4.0;
 constexpr double surprise_epochs = 10.0;
-/// An innovation beyond half of gravity, squared, is a lost phase rather than vibration of the hub.
-constexpr double most_shaking2 = 0.25;
+/// An innovation beyond this share of gravity is a lost phase rather than vibration of the hub.
+constexpr double most_shaking = 0.5;
+/// An innovation of a gyroscope beyond 0.1 rad/s, squared, is motion rather than vibration.
+constexpr double most_rate_noise2 = 0.01;
 /// White jerk of a wheel turned by hand, rad²/s⁵: the level to which the noise is raised at once.
 constexpr double lively_jerk_psd = 100.0;
 /// Limits of the motion noise.
@@ -48,12 +53,12 @@ double log_likelihood_of(const Step& step) {
 }  // namespace
 
 template <int S>
-LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelStart& start,
-                                    std::size_t lag_epochs,
-                                    double alignment_std_rad)
+LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelOptions& options,
+                                    const LiveWheelStart& start,
+                                    std::size_t lag_epochs)
     : planes_(start.planes),
       variance_m2ps4_(start.variance_m2ps4),
-      alignment_variance_rad2_(alignment_std_rad * alignment_std_rad),
+      alignment_variance_rad2_(square(options.wheel.alignment_std_rad)),
       delay_std_s_(start.delay_s.std),
       window_(lag_epochs),
       window_time_s_(lag_epochs + 1),
@@ -63,8 +68,13 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelStart& start,
   now_.phase_rad = start.phase_rad;
   now_.delay_s = start.delay_s;
   now_.epochs.assign(2, {0.0, {0, S == 2 ? 0 : WheelEpoch::no_row}});
-  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s)
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
     now_.sensors.push_back({{0.0}, {0.0}, {variance_m2ps4_[s]}});
+    if (!(start.speed_variance[s] > 0.0)) continue;
+    gyroscope_at_[s] = gyroscope_at(options, s);
+    now_.sensors[s].speed_radps = {std::numeric_limits<double>::quiet_NaN()};
+    now_.sensors[s].speed_variance = start.speed_variance[s];
+  }
   model_ = wheel_model<S>(now_, start.noise);
   model_.places_held = true;
   scale_motion(model_.noise, 1.0);
@@ -110,6 +120,10 @@ void LiveWheelFilter<S>::read(const LiveEpoch& epoch) {
     const Axis &u = planes_[s].u, &v = planes_[s].v;
     now_.sensors[s].u_mps2[0] = f(0) * u[0] + f(1) * u[1] + f(2) * u[2];
     now_.sensors[s].v_mps2[0] = f(0) * v[0] + f(1) * v[1] + f(2) * v[2];
+    if (!gyroscope_at_[s]) continue;
+    const Mat<3>& rate = epoch.vectors[*gyroscope_at_[s]];
+    const Axis& axis = planes_[s].axis;
+    now_.sensors[s].speed_radps[0] = rate(0) * axis[0] + rate(1) * axis[1] + rate(2) * axis[2];
   }
 }
 
@@ -178,27 +192,53 @@ double LiveWheelFilter<S>::predicted_std_rad() const {
       to.Q(wheel::angle, wheel::angle));
 }
 
+template <int S>
+void LiveWheelFilter<S>::Noise::add(double nis, double expected, double variance) {
+  innovation2 += std::min(nis, 4.0 * wheel_gate.huber) * expected;
+  explained += expected - variance;
+  readings += 1.0;
+}
+
+template <int S>
+void LiveWheelFilter<S>::Noise::adapt(double& variance) const {
+  if (readings < 20.0) return;
+  const double found = std::max(innovation2 - explained, 0.2 * innovation2) / readings;
+  if (found > 0.0) variance = std::sqrt(variance * found);
+}
+
+template <int S>
+void LiveWheelFilter<S>::Recent::add(double innovation, double most2) {
+  sum += std::min(innovation * innovation, most2);
+  channels += 1.0;
+}
+
+template <int S>
+void LiveWheelFilter<S>::Recent::end_epoch() {
+  if (channels > 0.0) mean += (sum / channels - mean) / surprise_epochs;
+  sum = channels = 0.0;
+}
+
 /// Updates measurement noise and motion noise from the innovations.
 template <int S>
 void LiveWheelFilter<S>::judge() {
   int channel = 0;
-  double clipped = 0.0, innovation2 = 0.0;
+  double clipped = 0.0;
   nis_ = 0.0;
+  const auto take = [&](Noise& noise, double variance, Recent& recent, double most2) {
+    const auto& u = step_.updates[static_cast<std::size_t>(channel)];
+    const double expected = expected_[static_cast<std::size_t>(channel++)];
+    const double nis = u.innovation * u.innovation / expected;
+    nis_ += nis;
+    clipped += std::min(nis, 4.0 * surprising);
+    recent.add(u.innovation, most2);
+    if (u.used) noise.add(nis, expected, variance);
+  };
+  const double most_shaking2 = square(most_shaking * now_.gravity_mps2);
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
     if (!model_.has_readings(s, 1)) continue;
-    for (int axis = 0; axis < 2; ++axis, ++channel) {
-      const auto& u = step_.updates[static_cast<std::size_t>(channel)];
-      const double expected = expected_[static_cast<std::size_t>(channel)];
-      const double nis = u.innovation * u.innovation / expected;
-      nis_ += nis;
-      clipped += std::min(nis, 4.0 * surprising);
-      innovation2 += std::min(u.innovation * u.innovation,
-                              most_shaking2 * now_.gravity_mps2 * now_.gravity_mps2);
-      if (!u.used) continue;
-      noise_[s].innovation2 += std::min(nis, 4.0 * wheel_gate.huber) * expected;
-      noise_[s].explained += expected - variance_m2ps4_[s];
-      noise_[s].readings += 1.0;
-    }
+    for (int axis = 0; axis < 2; ++axis) take(noise_[s], variance_m2ps4_[s], recent_, most_shaking2);
+    if (model_.has_speed(s, 1))
+      take(speed_noise_[s], now_.sensors[s].speed_variance, recent_speed_, most_rate_noise2);
   }
   since_loosened_s_ += now_.epochs[1].dt_s;
   if (channel == 0) {
@@ -206,7 +246,8 @@ void LiveWheelFilter<S>::judge() {
     return;
   }
   nis_ /= channel;
-  recent_innovation2_ += (innovation2 / channel - recent_innovation2_) / surprise_epochs;
+  recent_.end_epoch();
+  recent_speed_.end_epoch();
   notice_surprise(clipped / channel);
 }
 
@@ -228,8 +269,11 @@ void LiveWheelFilter<S>::loosen() {
   if (loosened_ > 1)
     model_.noise.jerk_psd =
         std::min(std::max(lively_jerk_psd, 10.0 * model_.noise.jerk_psd), most_jerk_psd);
-  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s)
-    variance_m2ps4_[s] = std::max(variance_m2ps4_[s], 0.5 * recent_innovation2_);
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
+    variance_m2ps4_[s] = std::max(variance_m2ps4_[s], 0.5 * recent_.mean);
+    double& of_speed = now_.sensors[s].speed_variance;
+    of_speed = std::max(of_speed, 0.5 * recent_speed_.mean);
+  }
   widen_motion(main_.x);
   for (Moved& moved : moved_) widen_motion(moved.state.x);
   forget_stretch();
@@ -243,24 +287,16 @@ void LiveWheelFilter<S>::forget_stretch() {
     rival.log_likelihood = 0.0;
   }
   main_log_likelihood_ = 0.0;
-  noise_ = {};
+  noise_ = speed_noise_ = {};
   stretch_start_s_ = time_s_;
-}
-
-/// The measurement variance moves half way (in logarithm) to the interval's estimate.
-template <int S>
-void LiveWheelFilter<S>::adapt_variance(std::size_t sensor) {
-  const Noise said = noise_[sensor];
-  if (said.readings < 20.0) return;
-  const double found =
-      std::max(said.innovation2 - said.explained, 0.2 * said.innovation2) / said.readings;
-  double& variance = variance_m2ps4_[sensor];
-  if (found > 0.0) variance = std::sqrt(variance * found);
 }
 
 template <int S>
 void LiveWheelFilter<S>::end_stretch() {
-  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) adapt_variance(s);
+  for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
+    noise_[s].adapt(variance_m2ps4_[s]);
+    speed_noise_[s].adapt(now_.sensors[s].speed_variance);
+  }
   const Rival& better =
       rivals_[0].log_likelihood >= rivals_[1].log_likelihood ? rivals_[0] : rivals_[1];
   if (better.log_likelihood > main_log_likelihood_) scale_motion(model_.noise, better.factor);
@@ -269,14 +305,14 @@ void LiveWheelFilter<S>::end_stretch() {
 
 template <int S>
 LiveWheelRow LiveWheelFilter<S>::row() const {
-  const auto of = [&](const Gaussian<2>& x, int i, double by_places) {
-    const double late = x.mean(wheel::speed) * delay_std_s_;
+  const auto of = [&](const Gaussian<3>& x, int i, double by_places) {
+    const double late = x.mean(i + 1) * delay_std_s_;
     const double more =
-        by_places + (i == wheel::angle ? alignment_variance_rad2_ + late * late : 0.0);
+        by_places + late * late + (i == wheel::angle ? alignment_variance_rad2_ : 0.0);
     return Uncertain{x.mean(i), std::sqrt(std::max(x.cov(i, i), 0.0) + more)};
   };
   const Mat<2>& by_places = window_places_[(epochs_ - 1) % window_places_.size()];
-  const Gaussian<2>& now = window_.state(0);
+  const Gaussian<3>& now = window_.state(0);
   LiveWheelRow row{.angle_rad = of(now, wheel::angle, by_places(0)),
                    .speed_radps = of(now, wheel::speed, by_places(1))};
   row.nis = nis_;
@@ -287,7 +323,7 @@ LiveWheelRow LiveWheelFilter<S>::row() const {
   }
   const std::size_t oldest = epochs_ % window_time_s_.size();
   row.smoothed_time_s = window_time_s_[oldest];
-  const Gaussian<2>& then = window_.state(window_.lag());
+  const Gaussian<3>& then = window_.state(window_.lag());
   row.smoothed_angle_rad = of(then, wheel::angle, window_places_[oldest](0));
   row.smoothed_speed_radps = of(then, wheel::speed, window_places_[oldest](1));
   return row;

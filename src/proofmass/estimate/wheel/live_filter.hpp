@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "proofmass/core/quantity.hpp"
@@ -26,7 +27,9 @@ class LiveWheelFilter {
  public:
   static constexpr int states = wheel::states(S), first_place = wheel::places(S);
 
-  LiveWheelFilter(const LiveWheelStart& start, std::size_t lag_epochs, double alignment_std_rad);
+  LiveWheelFilter(const LiveWheelOptions& options,
+                  const LiveWheelStart& start,
+                  std::size_t lag_epochs);
   LiveWheelFilter(const LiveWheelFilter&) = delete;
   LiveWheelFilter& operator=(const LiveWheelFilter&) = delete;
 
@@ -48,12 +51,14 @@ class LiveWheelFilter {
  private:
   using Model = WheelModel<S>;
   static constexpr int places = 2 * S;
+  /// Channels: u, v and the gyroscope of each sensor.
+  using PerChannel = std::array<double, static_cast<std::size_t>(3 * S)>;
   /// Perturbation of a lever arm. The measurement is linear in it.
   static constexpr double place_step_m = 1e-3;
   /// The filter with one coordinate of the lever arms perturbed, and its fit to the measurements.
   struct Moved {
     FilterState<states> state;
-    std::array<double, static_cast<std::size_t>(2 * S)> innovations{};
+    PerChannel innovations{};
   };
   /// Alternative noise parameters, and their gain in predicting the measurements of this interval.
   struct Rival {
@@ -61,9 +66,22 @@ class LiveWheelFilter {
     FilterState<states> state{};
     double log_likelihood = 0.0;
   };
-  /// Noise statistics of one sensor's measurements in an interval, as in settle_variance().
+  /// Noise statistics of one sensor's measurements, or its gyroscope's, in an interval, as in
+  /// settle_variance().
   struct Noise {
     double innovation2 = 0.0, explained = 0.0, readings = 0.0;
+
+    void add(double nis, double expected, double variance);
+    /// The variance moves half way (in logarithm) to this interval's estimate.
+    void adapt(double& variance) const;
+  };
+  /// Smoothed squared innovations, for loosen().
+  struct Recent {
+    double sum = 0.0, channels = 0.0;  ///< of this epoch
+    double mean = 0.0;
+
+    void add(double innovation, double most2);
+    void end_epoch();
   };
 
   void narrow_constants(const Eigen::MatrixXd& found_cov);
@@ -75,7 +93,6 @@ class LiveWheelFilter {
   void notice_surprise(double mean_nis);
   void loosen();
   void end_stretch();
-  void adapt_variance(std::size_t sensor);
   void forget_stretch();
   [[nodiscard]] double predicted_std_rad() const;
   // wheel/live_places.cpp, with what is public of the places:
@@ -90,6 +107,7 @@ class LiveWheelFilter {
   std::size_t epochs_ = 0;
   double time_s_ = 0.0;
   std::array<double, 2> variance_m2ps4_;  ///< of each sensor's measurements
+  std::array<std::optional<std::size_t>, 2> gyroscope_at_{};  ///< among an epoch's vectors
   double alignment_variance_rad2_ = 0.0, delay_std_s_ = 0.0;
 
   FilterState<states> main_;
@@ -99,14 +117,16 @@ class LiveWheelFilter {
   std::array<Rival, 2> rivals_{};
   double main_log_likelihood_ = 0.0;
 
-  FixedLag<states, 2> window_;
+  /// Angle, speed and acceleration.
+  FixedLag<states, 3> window_;
   std::vector<double> window_time_s_;
   std::vector<Mat<2>> window_places_;  ///< places_variance() at those times
 
-  std::array<Noise, 2> noise_{};
-  std::array<double, static_cast<std::size_t>(2 * S)> expected_{};  ///< squares of the innovations
+  std::array<Noise, 2> noise_{}, speed_noise_{};
+  PerChannel expected_{};  ///< squares of the innovations
   double first_time_s_ = 0.0, stretch_start_s_ = 0.0, nis_ = 0.0, since_loosened_s_ = 0.0;
-  double surprise_ = 1.0, recent_innovation2_ = 0.0;  ///< smoothed; per channel
+  double surprise_ = 1.0;  ///< smoothed NIS per channel
+  Recent recent_, recent_speed_;
   int loosened_ = 0;
   bool lost_ = false;
 };

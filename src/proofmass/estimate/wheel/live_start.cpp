@@ -17,26 +17,45 @@ double rate_of(const std::vector<LiveEpoch>& epochs) {
   return static_cast<double>(epochs.size() - 1) / span_s;
 }
 
-/// One sensor's samples, averaged over `each` epochs; a mean with a missing sample is missing.
+/// A vector's means over `each` epochs, along its first axes; a mean with a missing sample is NaN.
+void append_means(const std::vector<LiveEpoch>& epochs,
+                  std::size_t vector,
+                  std::size_t each,
+                  std::size_t axes,
+                  std::array<std::vector<double>, 3>& out) {
+  for (std::size_t first = 0; first + each <= epochs.size(); first += each) {
+    Mat<3> mean = Mat<3>::Zero();
+    for (std::size_t k = first; k < first + each; ++k)
+      mean += epochs[k].vectors[vector] / static_cast<double>(each);
+    for (std::size_t axis = 0; axis < axes; ++axis)
+      out[axis].push_back(mean(static_cast<Eigen::Index>(axis)));
+  }
+}
+
+/// One sensor's samples, averaged over `each` epochs.
 WheelSensor sensor_of(const std::vector<LiveEpoch>& epochs,
+                      const LiveWheelOptions& options,
                       std::size_t index,
-                      const Triad& channels,
                       std::size_t each) {
   WheelSensor sensor;
-  sensor.name = channels.name;
-  const std::size_t axes = channels.z ? 3 : 2;
+  sensor.name = options.sensors[index].name;
   for (std::size_t first = 0; first + each <= epochs.size(); first += each) {
     double time_s = 0.0;
-    Mat<3> force = Mat<3>::Zero();
-    for (std::size_t k = first; k < first + each; ++k) {
+    for (std::size_t k = first; k < first + each; ++k)
       time_s += (epochs[k].time_s - epochs[first].time_s) / static_cast<double>(each);
-      force += epochs[k].vectors[index] / static_cast<double>(each);
-    }
     sensor.time_s.push_back(epochs[first].time_s + time_s);
-    for (std::size_t axis = 0; axis < axes; ++axis)
-      sensor.accel_mps2[axis].push_back(force(static_cast<Eigen::Index>(axis)));
   }
+  append_means(epochs, index, each, options.sensors[index].z ? 3 : 2, sensor.accel_mps2);
+  if (const auto rates = gyroscope_at(options, index))
+    append_means(epochs, *rates, each, 3, sensor.rate_radps);
   return sensor;
+}
+
+/// Variance of the gyroscope's measurements; 0 if there are none.
+double speed_variance_of(const PlanarReadings& readings) {
+  const bool measured = std::ranges::any_of(readings.speed_radps,
+                                            [](double speed) { return !std::isnan(speed); });
+  return measured ? readings.speed_variance : 0.0;
 }
 
 std::vector<Note> notes_of(const std::vector<WheelSensor>& sensors,
@@ -55,6 +74,14 @@ std::vector<Note> notes_of(const std::vector<WheelSensor>& sensors,
 
 }  // namespace
 
+std::optional<std::size_t> gyroscope_at(const LiveWheelOptions& options, std::size_t sensor) {
+  if (sensor >= options.gyroscopes.size() || !options.gyroscopes[sensor].x) return std::nullopt;
+  std::size_t at = options.sensors.size();
+  for (std::size_t s = 0; s < sensor; ++s)
+    if (options.gyroscopes[s].x) ++at;
+  return at;
+}
+
 Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
                                   const LiveWheelOptions& options) {
   const std::size_t count = options.sensors.size();
@@ -64,7 +91,7 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
   const auto each = static_cast<std::size_t>(std::max(1.0, std::ceil(rate_hz / seek_rate_hz)));
   std::vector<WheelSensor> sensors;
   for (std::size_t s = 0; s < count; ++s)
-    sensors.push_back(sensor_of(epochs, s, options.sensors[s], each));
+    sensors.push_back(sensor_of(epochs, options, s, each));
   WheelOptions wheel = options.wheel;
   wheel.clocks_shared = true;
   wheel.radius_m.reset();  // used better by the filter itself
@@ -84,9 +111,11 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
   start.phase_rad = joint.readings.phase_rad;
   start.delay_s = joint.readings.delay_s;
   start.noise = joint.fit.track.noise;
-  for (std::size_t s = 0; s < count; ++s)
-    start.variance_m2ps4[s] =
-        static_cast<double>(each) * *median(joint.readings.sensors[s].variance_m2ps4);
+  for (std::size_t s = 0; s < count; ++s) {
+    const PlanarReadings& readings = joint.readings.sensors[s];
+    start.variance_m2ps4[s] = static_cast<double>(each) * *median(readings.variance_m2ps4);
+    start.speed_variance[s] = static_cast<double>(each) * speed_variance_of(readings);
+  }
   start.constants = joint.fit.constants;
   if (!joint.readings.shakes) start.constants_cov = joint.fit.constants_cov;
   const auto places = static_cast<Eigen::Index>(2 * count);

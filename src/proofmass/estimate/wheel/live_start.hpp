@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "proofmass/core/result.hpp"
@@ -12,6 +14,10 @@
 // Initialisation of a wheel from the first seconds.
 namespace proofmass::estimate {
 
+/// Place of a sensor's gyroscope among an epoch's vectors: after those of the accelerometers.
+[[nodiscard]] std::optional<std::size_t> gyroscope_at(const LiveWheelOptions& options,
+                                                      std::size_t sensor);
+
 /// Initial values of the online filter.
 struct LiveWheelStart {
   std::vector<WheelPlane> planes;  ///< of each sensor
@@ -19,6 +25,8 @@ struct LiveWheelStart {
   Uncertain delay_s{};  ///< of the sensors' filters
   WheelNoise noise;
   std::array<double, 2> variance_m2ps4{};  ///< of a measurement of each sensor, at the epochs' rate
+  /// The same of its gyroscope, rad²/s²; 0 without one.
+  std::array<double, 2> speed_variance{};
   WheelPrior prior;                        ///< of the state at the first epoch
   /// Covariance of `constants`, the lever arms included; empty if the hub vibrates: vibration
   /// biases constants that were fitted to a few seconds.
