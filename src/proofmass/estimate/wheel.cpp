@@ -233,20 +233,31 @@ void judge_turns(const WheelFit& fit, const std::string& where, WheelSolution& s
            "is ambiguous"});
 }
 
+/// The rolling radius that the results are for; with a gyroscope as estimated.
+Uncertain rolling_radius_m(const WheelReadings& readings, const WheelFit& fit) {
+  const auto has_gyro = [](const PlanarReadings& sensor) { return !sensor.speed_radps.empty(); };
+  if (std::ranges::none_of(readings.sensors, has_gyro)) return readings.rolling_radius_m;
+  const auto count = static_cast<int>(readings.sensors.size());
+  const Eigen::Index at = wheel::rolling(count) - wheel::first_of(0);
+  return {readings.rolling_radius_m.value + fit.constants(at), std::sqrt(fit.constants_cov(at, at))};
+}
+
 /// A wheel that vibrates is most likely on a vehicle, whose acceleration tilts the apparent
 /// gravity.
-void note_travel(const WheelReadings& readings, WheelSolution& solution) {
+void note_travel(const WheelReadings& readings, const WheelFit& fit, WheelSolution& solution) {
   if (readings.given_rolling_radius_m || !readings.shakes) return;
   double strongest = 0.0;
   for (const double accel : solution.series.accel_radps2)
     strongest = std::max(strongest, std::abs(accel));
-  const Uncertain& rolling = readings.rolling_radius_m;
+  const Uncertain rolling = rolling_radius_m(readings, fit);
+  const bool estimated = rolling.std < 0.5 * readings.rolling_radius_m.std;
   const double lean_deg = rolling.std * strongest / readings.gravity_mps2 / rad_per_deg;
   solution.notes.push_back(
       {Severity::info,
        "the wheel vibrates like a vehicle's, whose acceleration and braking tilt the "
        "apparent gravity by rolling radius x angular acceleration / g: the rolling radius is " +
-           std::string(readings.found_rolling_radius_m ? "estimated" : "assumed") + " as " +
+           std::string(readings.found_rolling_radius_m || estimated ? "estimated" : "assumed") +
+           " as " +
            std::to_string(std::lround(rolling.value * 1e3)) + " mm ± " +
            std::to_string(std::lround(rolling.std * 1e3)) +
            " mm, which makes the angle uncertain by up to " +
@@ -319,7 +330,7 @@ Result<WheelSolution> conclude(const WheelReadings& readings,
     channels[i].name = solution.sensors[i / each].name + names[i % each];
   solution.not_observable = say_not_observable(fit, solution.sensors);
   add_gated(solution);
-  note_travel(readings, solution);
+  note_travel(readings, fit, solution);
   if (const Status radius = check_radius(fit, options, solution); !radius) return radius.error();
   judge_turns(fit, doubtful, solution);
   return solution;

@@ -137,9 +137,10 @@ void describe_sensors(const WheelFit& fit, double phase_rad, std::vector<WheelSe
     if (s > 0) sensor.phase_rad = determined(fit, wheel::phase - wheel::first_of(0), phase_rad);
     const auto count = static_cast<int>(sensors.size());
     if (sensor.has_gyro) {
-      const int gyro = wheel::gyro(count) - wheel::first_of(0) + 2 * static_cast<int>(s);
-      sensor.gyro_bias_radps = determined(fit, gyro);
-      sensor.gyro_scale = determined(fit, gyro + 1, 1.0);
+      const int gyro =
+          wheel::gyro(count) - wheel::first_of(0) + wheel::gyro_states * static_cast<int>(s);
+      sensor.gyro_bias_radps = determined(fit, gyro + wheel::gyro_bias);
+      sensor.gyro_scale = determined(fit, gyro + wheel::gyro_scale, 1.0);
     }
     describe_place(fit, wheel::places(count) - wheel::first_of(0) + 2 * static_cast<int>(s),
                    sensor);

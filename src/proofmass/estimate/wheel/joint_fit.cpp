@@ -8,6 +8,7 @@
 #include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/wheel/gyro_jerk.hpp"
 #include "proofmass/estimate/wheel/rests.hpp"
 
 namespace proofmass::estimate {
@@ -45,8 +46,12 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
   readings.gravity_mps2 = gravity.value;
   readings.gravity_std_mps2 = gravity.std;
   readings.given_rolling_radius_m = options.rolling_radius_m;
-  for (std::size_t s = 0; s < sensors.size(); ++s)
-    readings.sensors.push_back(project(*sensors[s], prepared[s]->screened, prepared[s]->plane));
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    const WheelPlane& plane = prepared[s]->plane;
+    readings.sensors.push_back(project(*sensors[s], prepared[s]->screened, plane));
+    if (!sensors[s]->accel_mps2[2].empty())
+      readings.sensors.back().axle_slope = plane.axial_mps2 / readings.gravity_mps2;
+  }
   std::array<std::size_t, 2> next{};
   const auto skip_unusable = [&](std::size_t s) {
     while (next[s] < sensors[s]->time_s.size() && !prepared[s]->screened.usable[next[s]]) ++next[s];
@@ -72,7 +77,10 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
     readings.time_s.push_back(t);
     readings.epochs.push_back(epoch);
   }
-  if (!readings.epochs.empty()) mark_standing(readings);
+  if (!readings.epochs.empty()) {
+    mark_standing(readings);
+    mark_jerks(readings);
+  }
   return readings;
 }
 
@@ -339,10 +347,10 @@ Joint fit_jointly(std::vector<WheelSensor> sensors, Pair pair, const WheelOption
   track.path.standing.resize(wheel::standing(2));
   constexpr int between = wheel::gyro(1) - wheel::ripple(1);
   constexpr int ripple = wheel::ripple(1) - wheel::first_of(0), gyro = ripple + between;
-  constexpr int encoder = wheel::encoder(1) - wheel::first_of(0);
+  constexpr int rolling = wheel::rolling(1) - wheel::first_of(0);
   track.path.standing << first.head<5>(), second.head<5>(), 0.0, first.segment<between>(ripple),
-      first.segment<2>(gyro), second.segment<2>(gyro),
-      first.segment<wheel::encoder_states>(encoder), first.tail<2>(), second.tail<2>();
+      first.segment<wheel::gyro_states>(gyro), second.segment<wheel::gyro_states>(gyro),
+      first.segment<1 + wheel::encoder_states>(rolling), first.tail<2>(), second.tail<2>();
   track.beginning.angle_rad = track.path.moving.front()(wheel::angle);
   pair.singles.clear();
   sensors.clear();

@@ -62,10 +62,13 @@ void reset_constants(const WheelPrior& prior, Gaussian<wheel::states(S)>& x) {
   variance.template segment<2 * wheel::ripple_orders>(wheel::ripple(S))
       .setConstant(spread.ripple * spread.ripple);
   for (int s = 0; s < S; ++s) {
-    const int at = wheel::gyro(S) + 2 * s;
-    variance(at) = spread.gyro_bias_radps * spread.gyro_bias_radps;
-    variance(at + 1) = spread.gyro_scale * spread.gyro_scale;
+    const int at = wheel::gyro(S) + wheel::gyro_states * s;
+    variance(at + wheel::gyro_bias) = spread.gyro_bias_radps * spread.gyro_bias_radps;
+    variance(at + wheel::gyro_scale) = spread.gyro_scale * spread.gyro_scale;
+    variance(at + wheel::gyro_tilt) = spread.axle_slope * spread.axle_slope;
+    x.mean(at + wheel::gyro_tilt) = spread.axle_slopes[static_cast<std::size_t>(s)];
   }
+  variance(wheel::rolling(S)) = spread.rolling_m * spread.rolling_m;
   constexpr int encoder = wheel::encoder(S);
   variance(encoder) = spread.encoder_offset_rad * spread.encoder_offset_rad;
   for (int i = 1; i < wheel::encoder_states; ++i) {

@@ -29,6 +29,11 @@ constexpr double lively_jerk_psd = 100.0;
 constexpr double least_jerk_psd = 1e-4, most_jerk_psd = 1e4, least_bias_walk_psd = 2e-5;
 /// Above this the angle is lost.
 constexpr double lost_std_rad = 0.8;
+
+double along(const Mat<3>& vector, const Axis& axis) {
+  return vector(0) * axis[0] + vector(1) * axis[1] + vector(2) * axis[2];
+}
+
 void scale_motion(WheelNoise& noise, double factor) {
   noise.jerk_psd = std::clamp(noise.jerk_psd * factor, least_jerk_psd, most_jerk_psd);
   noise.snap_psd *= factor;
@@ -69,19 +74,29 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelOptions& options,
   now_.delay_s = start.delay_s;
   now_.epochs.assign(2, {0.0, {0, S == 2 ? 0 : WheelEpoch::no_row}});
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
+    jerks_.emplace_back(start.rate_hz, start.speed_scatter2[s]);
     now_.sensors.push_back({{0.0}, {0.0}, {variance_m2ps4_[s]}});
     if (!(start.speed_variance[s] > 0.0)) continue;
     gyroscope_at_[s] = gyroscope_at(options, s);
-    now_.sensors[s].speed_radps = {std::numeric_limits<double>::quiet_NaN()};
+    for (auto* rates : {&now_.sensors[s].speed_radps, &now_.sensors[s].rate_u_radps,
+                        &now_.sensors[s].rate_v_radps})
+      *rates = {std::numeric_limits<double>::quiet_NaN()};
     now_.sensors[s].speed_variance = start.speed_variance[s];
+    now_.sensors[s].leak_u = start.leak_u[s];
+    now_.sensors[s].leak_v = start.leak_v[s];
   }
   model_ = wheel_model<S>(now_, start.noise);
   model_.places_held = true;
   scale_motion(model_.noise, 1.0);
   model_.noise.bias_walk_psd = std::max(model_.noise.bias_walk_psd, least_bias_walk_psd);
   main_ = prior_state<S>(start.prior);
+  constexpr int gyro = wheel::gyro(S), of_gyro = wheel::encoder(S) - gyro;
+  const Mat<of_gyro> believed = main_.x.mean.template segment<of_gyro>(gyro);
   main_.x.mean.template tail<wheel::standing(S)>() = start.constants;
-  if (start.constants_cov.size() > 0) narrow_constants(start.constants_cov);
+  if (start.constants_cov.size() > 0)
+    narrow_constants(start.constants_cov);
+  else  // a few seconds of pushes leave bias, scale and rolling radius along a line
+    main_.x.mean.template segment<of_gyro>(gyro) = believed;
   places_cov_ = start.places_cov;
   for (int i = 0; i < places; ++i) seat(i);
   rivals_[0] = {rival_factor, main_};
@@ -114,16 +129,23 @@ void LiveWheelFilter<S>::seat(int place) {
 template <int S>
 void LiveWheelFilter<S>::read(const LiveEpoch& epoch) {
   now_.epochs[1].dt_s = epochs_ == 0 ? 0.0 : epoch.time_s - time_s_;
+  now_.epochs[1].jerk_psd = 0.0;
   time_s_ = epoch.time_s;
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
     const Mat<3>& f = epoch.vectors[s];
     const Axis &u = planes_[s].u, &v = planes_[s].v;
-    now_.sensors[s].u_mps2[0] = f(0) * u[0] + f(1) * u[1] + f(2) * u[2];
-    now_.sensors[s].v_mps2[0] = f(0) * v[0] + f(1) * v[1] + f(2) * v[2];
+    now_.sensors[s].u_mps2[0] = along(f, u);
+    now_.sensors[s].v_mps2[0] = along(f, v);
     if (!gyroscope_at_[s]) continue;
     const Mat<3>& rate = epoch.vectors[*gyroscope_at_[s]];
     const Axis& axis = planes_[s].axis;
-    now_.sensors[s].speed_radps[0] = rate(0) * axis[0] + rate(1) * axis[1] + rate(2) * axis[2];
+    PlanarReadings& sensor = now_.sensors[s];
+    double& jerk_psd = now_.epochs[1].jerk_psd;
+    const double speed = along(rate, axis);
+    sensor.speed_radps[0] = speed;
+    jerk_psd = std::max(jerk_psd, jerks_[s].add(speed));
+    sensor.rate_u_radps[0] = along(rate, u) - sensor.leak_u.at(speed);
+    sensor.rate_v_radps[0] = along(rate, v) - sensor.leak_v.at(speed);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "proofmass/core/quantity.hpp"
 #include "proofmass/estimate/filter/fixed_lag.hpp"
+#include "proofmass/estimate/wheel/gyro_jerk.hpp"
 #include "proofmass/estimate/wheel/live_start.hpp"
 
 // The parallel filters of an online wheel.
@@ -108,6 +109,7 @@ class LiveWheelFilter {
   double time_s_ = 0.0;
   std::array<double, 2> variance_m2ps4_;  ///< of each sensor's measurements
   std::array<std::optional<std::size_t>, 2> gyroscope_at_{};  ///< among an epoch's vectors
+  std::vector<GyroJerk> jerks_;                               ///< one for each sensor
   double alignment_variance_rad2_ = 0.0, delay_std_s_ = 0.0;
 
   FilterState<states> main_;

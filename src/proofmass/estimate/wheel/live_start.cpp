@@ -105,6 +105,7 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
   else
     joint = {std::move(pair.singles[0].readings), std::move(pair.singles[0].fit)};
   LiveWheelStart start;
+  start.rate_hz = rate_hz;
   for (const Single& single : pair.singles) start.planes.push_back(single.prepared.plane);
   start.gravity_mps2 = joint.readings.gravity_mps2;
   start.rolling_radius_m = joint.readings.rolling_radius_m.value;
@@ -115,6 +116,9 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
     const PlanarReadings& readings = joint.readings.sensors[s];
     start.variance_m2ps4[s] = static_cast<double>(each) * *median(readings.variance_m2ps4);
     start.speed_variance[s] = static_cast<double>(each) * speed_variance_of(readings);
+    start.speed_scatter2[s] = static_cast<double>(each) * readings.speed_scatter2;
+    start.leak_u[s] = readings.leak_u;
+    start.leak_v[s] = readings.leak_v;
   }
   start.constants = joint.fit.constants;
   if (!joint.readings.shakes) start.constants_cov = joint.fit.constants_cov;
@@ -124,6 +128,9 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
   start.prior.beginning = {joint.fit.series.angle_rad.front(), 0.2,
                            joint.fit.series.speed_radps.front(), 1.0};
   if (!start.whole_turn) start.prior.spread = short_way_prior;
+  start.prior.spread.rolling_m = joint.readings.rolling_radius_m.std;
+  for (std::size_t s = 0; s < count; ++s)
+    start.prior.spread.axle_slopes[s] = joint.readings.sensors[s].axle_slope;
   start.prior.places = places_in(joint.fit, count);
   start.notes = notes_of(sensors, pair, options.wheel);
   return start;

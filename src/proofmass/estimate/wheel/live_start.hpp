@@ -21,12 +21,15 @@ namespace proofmass::estimate {
 /// Initial values of the online filter.
 struct LiveWheelStart {
   std::vector<WheelPlane> planes;  ///< of each sensor
+  double rate_hz = 0.0;            ///< of the epochs
   double gravity_mps2 = standard_gravity_mps2, rolling_radius_m = 0.0, phase_rad = 0.0;
   Uncertain delay_s{};  ///< of the sensors' filters
   WheelNoise noise;
   std::array<double, 2> variance_m2ps4{};  ///< of a measurement of each sensor, at the epochs' rate
   /// The same of its gyroscope, rad²/s²; 0 without one.
   std::array<double, 2> speed_variance{};
+  std::array<double, 2> speed_scatter2{};  ///< of neighbouring ones
+  std::array<RateLeak, 2> leak_u{}, leak_v{};
   WheelPrior prior;                        ///< of the state at the first epoch
   /// Covariance of `constants`, the lever arms included; empty if the hub vibrates: vibration
   /// biases constants that were fitted to a few seconds.

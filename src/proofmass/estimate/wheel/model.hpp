@@ -23,7 +23,8 @@
 // angle; sensor 2 has φ = θ + μ.
 //
 // Not observable, hence no states: a common rotation of both axes of sensor 1 against the wheel's
-// marks, and ρ, since a_h shifts the apparent gravity by −ρ α / g, as a shift of φ does. Source:
+// marks and, by accelerometers alone, ρ, since a_h shifts the apparent gravity by −ρ α / g, as a
+// shift of φ does. Source:
 // kinematics of a rigid body in a plane; for two opposite sensors with parallel axes, M. A. Lele
 // (2010), section 4.4, with α = a_t / R.
 //
@@ -36,9 +37,15 @@
 // nuisance parameter, scale, skew and lever arm would appear to be observable at one speed.
 //
 // A sensor's filter delays the motion by τ. Rotating quantities (gravity and hub acceleration) are
-// delayed by atan(ω τ) instead of ω τ and attenuated by the cosine of that (one pole). Its
-// gyroscope, if any, measures (1 + s_g) ω + b_g about the axle, with the same delay. Averages of
+// delayed by atan(ω τ) instead of ω τ and attenuated by the cosine of that (one pole). Averages of
 // measurements whose times have the variance σ² attenuate rotating quantities by exp(−ω² σ²/2).
+//
+// The sensor's gyroscope, if any, measures (1 + s_g)(ω + Ω sin ε) + b_g about the axle, with the
+// same delay. Ω is the rate at which the vehicle turns about the vertical and ε the axle's
+// inclination, for example the camber of a wheelchair: turning on the spot by half a turn at 18°
+// adds 1 rad to the integral. In the wheel's plane the gyroscope measures Ω cos ε along gravity's
+// direction, so that Ω sin ε = tan ε (ω_u sin φ + ω_v cos φ). With a gyroscope the motion is known
+// independently of gravity, and ρ is observable: it is a state then.
 //
 // An encoder on the axle shows ψ with d ψ = θ + o + d Σ c_n cos nψ + s_n sin nψ, n = 1 (its disc
 // is off centre) and 2 (it is warped), d = ±1 its direction and o its offset; without delay.
@@ -64,6 +71,8 @@ inline constexpr double ripple_walk_psd = 1e-7;
 /// gyroscope resolves the count and bridges disturbed intervals; against gravity it has no more
 /// weight than this.
 inline constexpr double gyro_bias_walk_psd = 1e-7, gyro_scale_walk_psd = 1e-6;
+/// Random walk of the tangent of the axle's inclination, 1/s: half a degree within ten seconds.
+inline constexpr double axle_slope_walk_psd = 1e-5;
 
 /// A warm-up of a bias, as a fraction of its value at the end of the recording, and the prior
 /// standard deviation of that value. A time constant as long as the recording resembles a ramp of
@@ -232,7 +241,7 @@ struct WheelModel {
              t3 / 6,  t2 / 2, t;
     // clang-format on
     step.Q *= noise.snap_psd;
-    step.Q.template topLeftCorner<3, 3>() += noise.jerk_psd * rough;
+    step.Q.template topLeftCorner<3, 3>() += (noise.jerk_psd + (*epochs)[k].jerk_psd) * rough;
     step.mean = step.F * x.template head<moving>();
     step.walk.setZero();
     if (with_ripple)
@@ -243,8 +252,10 @@ struct WheelModel {
       step.walk.template segment<2>(wheel::first_of(s)).setConstant(noise.bias_walk_psd * t);
     if (with_gyro)
       for (int s = 0; s < Sensors; ++s)
-        step.walk.template segment<2>(wheel::gyro(Sensors) + 2 * s) << gyro_bias_walk_psd * t,
-            gyro_scale_walk_psd * t;
+        step.walk.template segment<wheel::gyro_states>(wheel::gyro(Sensors) +
+                                                       wheel::gyro_states * s)
+            << gyro_bias_walk_psd * t,
+            gyro_scale_walk_psd * t, axle_slope_walk_psd * t;
     if (encoder != nullptr) step.walk(wheel::encoder(Sensors)) = encoder->walk_psd * t;
     return step;
   }
@@ -298,7 +309,7 @@ struct WheelModel {
         v.value -= share * warm_up_mps2(2 * s + 1);
       }
       if (has_speed(index, k)) {
-        read_gyro(at_state, now, s, out);
+        read_gyro(at_state, now, s, at, out);
         auto& speed = out.rows[first + 2];
         speed.value = sensor.speed_radps[at];
         speed.variance = sensor.speed_variance;
@@ -357,13 +368,27 @@ struct WheelModel {
         square(standing_speed_radps) * std::max(1.0, standing_stretch_s / (*epochs)[k].dt_s);
   }
 
-  void read_gyro(const State& x, const Motion& now, int s, Readings<states, channels>& out) const {
-    const int at = wheel::gyro(Sensors) + 2 * s;
+  void read_gyro(const State& x,
+                 const Motion& now,
+                 int s,
+                 std::size_t at_row,
+                 Readings<states, channels>& out) const {
+    const int at = wheel::gyro(Sensors) + wheel::gyro_states * s;
+    const PlanarReadings& sensor = *readings[static_cast<std::size_t>(s)];
+    const double phi = now.angle + (s > 0 ? phase_rad + x(wheel::phase) : 0.0);
+    const double sin_phi = std::sin(phi), cos_phi = std::cos(phi);
+    const double rate_u = sensor.rate_u_radps[at_row], rate_v = sensor.rate_v_radps[at_row];
+    const double vehicle = rate_u * sin_phi + rate_v * cos_phi;
+    const double gain = 1.0 + x(at + wheel::gyro_scale), slope = x(at + wheel::gyro_tilt);
+    const double by_phi = slope * (rate_u * cos_phi - rate_v * sin_phi);
+    const double rate = now.speed + slope * vehicle;
     auto& row = out.rows[static_cast<std::size_t>(out.count++)];
-    row.h = (1.0 + x(at + 1)) * now.by_speed;
-    row.h(at) = 1.0;
-    row.h(at + 1) = now.speed;
-    row.predicted = (1.0 + x(at + 1)) * now.speed + x(at);
+    row.h = gain * (now.by_speed + by_phi * now.by_angle);
+    if (s > 0) row.h(wheel::phase) += gain * by_phi;
+    row.h(at + wheel::gyro_bias) = 1.0;
+    row.h(at + wheel::gyro_scale) = rate;
+    row.h(at + wheel::gyro_tilt) = gain * vehicle;
+    row.predicted = gain * rate + x(at + wheel::gyro_bias);
   }
 
   /// The errors are those at the measured angle, which makes them linear in the state.
@@ -404,7 +429,8 @@ struct WheelModel {
     const int place = wheel::places(Sensors) + 2 * s;
     const double ru = x(place), rv = x(place + 1);
     const double shown = weaker * std::exp(-0.5 * w * w * spread_s2);
-    const double g = shown * gravity_mps2, hub = -shown * rolling_radius_m * al;
+    const double rho = rolling_radius_m + x(wheel::rolling(Sensors));
+    const double g = shown * gravity_mps2, hub = -shown * rho * al;
     // Forces and their derivatives in the sensor's true axes.
     const double turn_u = g * cos_phi - hub * sin_phi;   // ∂f_u/∂φ
     const double turn_v = -g * sin_phi - hub * cos_phi;  // ∂f_v/∂φ
@@ -416,8 +442,8 @@ struct WheelModel {
     const double fade = late * delay_s * weaker2 + w * spread_s2;
     const double by_w_u = -2.0 * w * ru + sooner * turn_u + fade * turn_v;
     const double by_w_v = -2.0 * w * rv + sooner * turn_v - fade * turn_u;
-    const double by_al_u = -rv - shown * rolling_radius_m * cos_phi;
-    const double by_al_v = ru + shown * rolling_radius_m * sin_phi;
+    const double by_al_u = -rv - shown * rho * cos_phi;
+    const double by_al_v = ru + shown * rho * sin_phi;
     // Through scale and skew to the measurement.
     const double su = 1.0 + x(at + wheel::scale), sv = 1.0 + x(at + wheel::scale + 1);
     const double skew = x(at + wheel::skew);
@@ -445,6 +471,8 @@ struct WheelModel {
     if (s > 0)
       take([](auto& h) { return h.template segment<1>(wheel::phase); }, Mat<1>(turn_u),
            Mat<1>(turn_v));
+    take([](auto& h) { return h.template segment<1>(wheel::rolling(Sensors)); },
+         Mat<1>(-shown * al * cos_phi), Mat<1>(shown * al * sin_phi));
     take([place](auto& h) { return h.template segment<2>(place); }, Mat<2>(-lever(0), -lever(1)),
          Mat<2>(lever(1), -lever(0)));
     u.h(at + wheel::scale) = fu + skew * fv;

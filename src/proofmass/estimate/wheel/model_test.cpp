@@ -107,7 +107,11 @@ TEST(WheelModel, JacobianWithRippleDelayAndGyroscopesEqualsDifferences) {
   epoch.model.with_ripple = epoch.model.with_gyro = true;
   epoch.model.orders = {1, 2, 5, 7};
   epoch.model.delay_s = 0.01;
-  for (PlanarReadings& sensor : epoch.readings) sensor.speed_radps = {1.0};
+  for (PlanarReadings& sensor : epoch.readings) {
+    sensor.speed_radps = {1.0};
+    sensor.rate_u_radps = {0.7};
+    sensor.rate_v_radps = {-1.3};
+  }
   expect_jacobian_of_differences(epoch, 6);
 }
 

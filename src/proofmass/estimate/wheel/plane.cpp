@@ -175,14 +175,73 @@ std::vector<bool> saturated(const std::vector<double>& rate_radps) {
   return out;
 }
 
-/// The gyroscope's measurements about the axle, with an initial variance from their scatter.
+/// Regression on the speed, of measurements within `most_radps` of another.
+RateLeak regression(const std::vector<double>& rate_radps,
+                    const std::vector<double>& speed_radps,
+                    const RateLeak& about,
+                    double most_radps) {
+  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  for (std::size_t row = 0; row < rate_radps.size(); ++row) {
+    const double speed = speed_radps[row], rate = rate_radps[row];
+    if (!(std::abs(rate - about.at(speed)) < most_radps)) continue;  // NaN too
+    n += 1.0;
+    x += speed;
+    y += rate;
+    xx += speed * speed;
+    xy += speed * rate;
+  }
+  const double spread = n * xx - x * x;
+  if (!(spread > 0.0)) return about;
+  const double share = (n * xy - x * y) / spread;
+  return {(y - share * x) / n, share};
+}
+
+/// A turning vehicle's rate rotates in the sensor's axes: it averages out over the turns of a fast
+/// wheel, and is the exception on a slow one.
+RateLeak leak_of(const std::vector<double>& rate_radps, const std::vector<double>& speed_radps) {
+  constexpr int rounds = 6;
+  constexpr double most_std = 3.0;
+  RateLeak leak = regression(rate_radps, speed_radps, {}, std::numeric_limits<double>::infinity());
+  std::vector<double> off;
+  for (int round = 0; round < rounds; ++round) {
+    off.clear();
+    for (std::size_t row = 0; row < rate_radps.size(); ++row)
+      if (!std::isnan(speed_radps[row])) off.push_back(rate_radps[row] - leak.at(speed_radps[row]));
+    const double std_radps = robust_std(off).value_or(0.0);
+    leak = regression(rate_radps, speed_radps, leak, most_std * std_radps);
+  }
+  return leak;
+}
+
+void remove_leak(const RateLeak& leak,
+                 const std::vector<double>& speed_radps,
+                 std::vector<double>& rate_radps) {
+  for (std::size_t row = 0; row < rate_radps.size(); ++row)
+    rate_radps[row] -= leak.at(speed_radps[row]);
+}
+
+/// Whether the gyroscope's measurements amount to a whole turn.
+bool turns_round(const std::vector<double>& time_s, const std::vector<double>& speed_radps) {
+  double angle = 0.0, lowest = 0.0, highest = 0.0, last_s = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t row = 0; row < time_s.size(); ++row) {
+    if (std::isnan(speed_radps[row])) continue;
+    if (!std::isnan(last_s)) angle += speed_radps[row] * (time_s[row] - last_s);
+    last_s = time_s[row];
+    lowest = std::min(lowest, angle);
+    highest = std::max(highest, angle);
+  }
+  return highest - lowest > rad_per_turn;
+}
+
+/// The gyroscope's measurements, with an initial variance from their scatter.
 void add_speeds(const WheelSensor& sensor,
                 const Screened& screened,
                 const WheelPlane& plane,
                 PlanarReadings& readings) {
   constexpr double least_variance = 1e-6;
   const std::size_t size = sensor.time_s.size();
-  readings.speed_radps.assign(size, std::numeric_limits<double>::quiet_NaN());
+  for (auto* rates : {&readings.speed_radps, &readings.rate_u_radps, &readings.rate_v_radps})
+    rates->assign(size, std::numeric_limits<double>::quiet_NaN());
   std::array<std::vector<bool>, 3> at_its_end;
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (std::abs(plane.axis[axis]) > 0.05) at_its_end[axis] = saturated(sensor.rate_radps[axis]);
@@ -198,14 +257,22 @@ void add_speeds(const WheelSensor& sensor,
       continue;
     }
     readings.speed_radps[row] = speed;
+    readings.rate_u_radps[row] = dot(rate, plane.u);
+    readings.rate_v_radps[row] = dot(rate, plane.v);
     if (row >= 2)
       seconds.push_back(speed - 2.0 * readings.speed_radps[row - 1] +
                         readings.speed_radps[row - 2]);
   }
+  if (turns_round(sensor.time_s, readings.speed_radps)) {
+    readings.leak_u = leak_of(readings.rate_u_radps, readings.speed_radps);
+    readings.leak_v = leak_of(readings.rate_v_radps, readings.speed_radps);
+    remove_leak(readings.leak_u, readings.speed_radps, readings.rate_u_radps);
+    remove_leak(readings.leak_v, readings.speed_radps, readings.rate_v_radps);
+  }
   std::erase_if(seconds, [](double second) { return std::isnan(second); });
   // A second difference of white noise has six times its variance.
-  readings.speed_variance =
-      std::max(least_variance, std::pow(robust_std(seconds).value_or(0.0), 2) / 6.0);
+  readings.speed_scatter2 = square(robust_std(seconds).value_or(0.0)) / 6.0;
+  readings.speed_variance = std::max(least_variance, readings.speed_scatter2);
 }
 
 /// Mean and variance of x² for a normal x.

@@ -13,13 +13,26 @@
 // The measurements of a wheel's sensors and encoder as the filter takes them.
 namespace proofmass::estimate {
 
+/// What a gyroscope's axis in the plane of the wheel measures without a turning vehicle: its bias,
+/// and a share of the speed if the axes are not exactly perpendicular to the axle.
+struct RateLeak {
+  double bias_radps = 0.0, share = 0.0;
+
+  [[nodiscard]] double at(double speed_radps) const { return bias_radps + share * speed_radps; }
+};
+
 /// Measurements of one sensor in the plane of the wheel, SI.
 struct PlanarReadings {
   std::vector<double> u_mps2, v_mps2;  ///< NaN where missing
   std::vector<double> variance_m2ps4;  ///< of each measurement, both axes alike
   /// Gyroscope rate about the axle, NaN where missing; empty without one.
   std::vector<double> speed_radps{};
-  double speed_variance = 0.0;  ///< variance of each, rad²/s²
+  double speed_variance = 0.0;  ///< variance of each, rad²/s², with what the model leaves
+  double speed_scatter2 = 0.0;  ///< variance by neighbouring measurements: the gyroscope's noise
+  /// Its rates along u and v less their leaks, as long: a turning vehicle's. NaN as above.
+  std::vector<double> rate_u_radps{}, rate_v_radps{};
+  RateLeak leak_u{}, leak_v{};
+  double axle_slope = 0.0;  ///< tangent of the axle's inclination as the accelerometer shows it
   std::size_t saturated_speeds = 0;
 
   [[nodiscard]] bool has(std::size_t row) const {
@@ -66,6 +79,9 @@ struct WheelEpoch {
   std::array<std::int64_t, 2> row{no_row, no_row};
   /// Wheel static: the measurements around keep their values, see mark_standing().
   bool stands = false;
+  /// White jerk since the previous epoch beyond that of the noise parameters, rad²/s⁵, see
+  /// mark_jerks().
+  double jerk_psd = 0.0;
   /// Variance of the times of the measurements averaged in this epoch.
   double spread_s2 = 0.0;
 };

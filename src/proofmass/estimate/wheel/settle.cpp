@@ -20,6 +20,8 @@ ConstantsPrior prior_for(const WheelPath& path, const WheelReadings& readings) {
   ConstantsPrior prior = short_way ? short_way_prior : ConstantsPrior{};
   if (!short_way) prior.ripple = ripple_share;
   if (readings.encoder) prior.encoder_errors_rad = readings.encoder->errors_rad;
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s)
+    prior.axle_slopes[s] = readings.sensors[s].axle_slope;
   return prior;
 }
 
@@ -69,13 +71,16 @@ void adapt_ripple(double from_m, double to_m, const WheelReadings& readings, Whe
   }
 }
 
-/// Changes the model's rolling radius, and with it the ripple of the path.
+/// Changes the model's rolling radius, and with it the ripple of the path, whose own difference
+/// from the model's is reset.
 template <int S>
 void change_rolling_radius(double to_m,
                            const WheelReadings& readings,
                            WheelModel<S>& model,
                            WheelPath& path) {
+  if (to_m == model.rolling_radius_m) return;
   adapt_ripple<S>(model.rolling_radius_m, to_m, readings, path);
+  path.standing(wheel::rolling(S) - wheel::first_of(0)) = 0.0;
   model.rolling_radius_m = to_m;
 }
 
@@ -121,6 +126,7 @@ Settled<S> settle(WheelReadings& readings, WheelTrack& track, const PlacesPrior&
     assume_rolling_radius(readings);
   }
   change_rolling_radius(readings.rolling_radius_m.value, readings, model, track.path);
+  if (model.with_gyro) prior.spread.rolling_m = readings.rolling_radius_m.std;
   const Excerpt<S> excerpt = excerpt_to_tune(model, prior);
   model.noise = tune_noise(model, excerpt, track.tuned).noise;
   const FoundPlaces likeliest = likeliest_places(model, excerpt, prior, belief);

@@ -19,14 +19,20 @@ inline constexpr int ripple_orders = 4;  ///< (c, s) for each
 [[nodiscard]] constexpr int ripple(int sensors) {
   return first_of(sensors) + (sensors - 1);
 }
-/// Bias, rad/s, and scale error of each sensor's gyroscope.
+/// Bias, rad/s, and scale error of each sensor's gyroscope, and the tangent of the axle's
+/// inclination.
+inline constexpr int gyro_bias = 0, gyro_scale = 1, gyro_tilt = 2, gyro_states = 3;
 [[nodiscard]] constexpr int gyro(int sensors) {
   return ripple(sensors) + 2 * ripple_orders;
+}
+/// Rolling radius, m, the difference from the model's; estimated with a gyroscope.
+[[nodiscard]] constexpr int rolling(int sensors) {
+  return gyro(sensors) + gyro_states * sensors;
 }
 /// Offset of the encoder, rad, then (c, s) of each order of its errors.
 inline constexpr int encoder_orders = 2, encoder_states = 1 + 2 * encoder_orders;
 [[nodiscard]] constexpr int encoder(int sensors) {
-  return gyro(sensors) + 2 * sensors;
+  return rolling(sensors) + 1;
 }
 /// The lever arms come last: once found they are held, and the filter runs on the states before
 /// them.

@@ -3,6 +3,7 @@
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/wheel/gyro_jerk.hpp"
 #include "proofmass/estimate/wheel/doubts.hpp"
 #include "proofmass/estimate/wheel/encoder.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
@@ -95,7 +96,8 @@ std::int64_t append_average(const PlanarReadings& sensor,
                             std::size_t index,
                             std::span<const WheelEpoch> epochs,
                             PlanarReadings& out) {
-  double u = 0.0, v = 0.0, variance = 0.0, count = 0.0, speed = 0.0, speeds = 0.0;
+  double u = 0.0, v = 0.0, variance = 0.0, count = 0.0, speeds = 0.0;
+  Mat<3> rate = Mat<3>::Zero();  // about the axle, along u and v
   for (const WheelEpoch& epoch : epochs) {
     const std::int64_t row = epoch.row[index];
     const auto at = static_cast<std::size_t>(row);
@@ -105,19 +107,24 @@ std::int64_t append_average(const PlanarReadings& sensor,
     variance += sensor.variance_m2ps4[at];
     count += 1.0;
     if (sensor.speed_radps.empty() || std::isnan(sensor.speed_radps[at])) continue;
-    speed += sensor.speed_radps[at];
+    rate += Mat<3>(sensor.speed_radps[at], sensor.rate_u_radps[at], sensor.rate_v_radps[at]);
     speeds += 1.0;
   }
   if (count == 0.0) return WheelEpoch::no_row;
   out.u_mps2.push_back(u / count);
   out.v_mps2.push_back(v / count);
   out.variance_m2ps4.push_back(variance / (count * count));
-  if (!sensor.speed_radps.empty())
-    out.speed_radps.push_back(speeds > 0.0 ? speed / speeds
-                                           : std::numeric_limits<double>::quiet_NaN());
+  if (!sensor.speed_radps.empty()) {
+    rate /= speeds;  // NaN without any
+    out.speed_radps.push_back(rate(0));
+    out.rate_u_radps.push_back(rate(1));
+    out.rate_v_radps.push_back(rate(2));
+  }
   return static_cast<std::int64_t>(out.u_mps2.size()) - 1;
 }
 
+/// Prior standard deviation of the rolling radius about 0: a bench's or a vehicle's.
+constexpr double unknown_rolling_m = 0.2;
 /// Share of unexplained measurements below which no further noise parameters are tried.
 constexpr double clearly_found = 0.3;
 
@@ -125,12 +132,15 @@ constexpr double clearly_found = 0.3;
 WheelTrack seek_track(WheelReadings& readings, std::size_t first) {
   WheelTrack best;
   best.lost = std::numeric_limits<double>::infinity();
+  ConstantsPrior prior = seeking_prior;
+  prior.axle_slopes[0] = readings.sensors[0].axle_slope;
+  if (!readings.sensors[0].speed_radps.empty()) prior.rolling_m = unknown_rolling_m;
   for (std::size_t i = first; i < seeks.size(); ++i) {
     const Seek& seek = seeks[i];
     set_variance(readings, seek.accel_std_mps2);
     const auto model = wheel_model<1>(readings, seek.noise);
     const Beginning beginning = seek_beginning(readings, seek.noise);
-    Traced<1> traced = trace_path(model, prior_state<1>({beginning, seeking_prior, {}}));
+    Traced<1> traced = trace_path(model, prior_state<1>({beginning, prior, {}}));
     // A filter that follows every vibration predicts slightly better without being better.
     if (traced.lost >= 0.6 * best.lost) continue;
     const Mat<wheel::moving>& at = traced.path.moving.front();
@@ -188,8 +198,11 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
                     .epochs = {},
                     .sensors = std::vector<PlanarReadings>(readings.sensors.size())};
   if (readings.encoder) out.encoder = averaged(*readings.encoder, readings.time_s, each);
-  for (std::size_t s = 0; s < readings.sensors.size(); ++s)
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
     out.sensors[s].speed_variance = readings.sensors[s].speed_variance / static_cast<double>(each);
+    out.sensors[s].speed_scatter2 = readings.sensors[s].speed_scatter2 / static_cast<double>(each);
+    out.sensors[s].axle_slope = readings.sensors[s].axle_slope;
+  }
   const std::span all(readings.epochs);
   for (std::size_t first = 0; first < all.size(); first += each) {
     const auto epochs = all.subspan(first, std::min(each, all.size() - first));
@@ -205,6 +218,7 @@ WheelReadings averaged(const WheelReadings& readings, std::size_t each) {
     out.time_s.push_back(time_s);
     out.epochs.push_back(averaged);
   }
+  mark_jerks(out);
   return out;
 }
 

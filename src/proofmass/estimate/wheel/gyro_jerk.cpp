@@ -1,0 +1,55 @@
+#include "proofmass/estimate/wheel/gyro_jerk.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "proofmass/core/contract.hpp"
+#include "proofmass/core/statistics.hpp"
+
+namespace proofmass::estimate {
+namespace {
+
+constexpr double apart_s = 0.02;
+/// A second difference within this many standard deviations may be noise.
+constexpr double most_std = 3.0;
+
+}  // namespace
+
+GyroJerk::GyroJerk(double rate_hz, double noise_variance)
+    : apart_(static_cast<std::size_t>(std::max(1.0, std::round(apart_s * rate_hz)))),
+      noise2_(6.0 * square(most_std) * noise_variance),
+      last_(2 * apart_ + 1) {
+  PM_EXPECTS(rate_hz > 0.0);
+  const double h = static_cast<double>(apart_) / rate_hz;
+  per_square_ = 1.5 / (h * h * h);
+  decay_ = std::exp(-0.5 / static_cast<double>(apart_));
+}
+
+double GyroJerk::add(double speed_radps) {
+  psd_ *= decay_;
+  if (std::isnan(speed_radps)) {
+    count_ = 0;
+    return psd_;
+  }
+  const std::size_t size = last_.size(), at = count_ % size;
+  last_[at] = speed_radps;
+  if (++count_ < size) return psd_;
+  const double second =
+      speed_radps - 2.0 * last_[(at + size - apart_) % size] + last_[(at + 1) % size];
+  psd_ = std::max(psd_, per_square_ * std::max(second * second - noise2_, 0.0));
+  return psd_;
+}
+
+void mark_jerks(WheelReadings& readings) {
+  for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
+    const PlanarReadings& sensor = readings.sensors[s];
+    if (sensor.speed_radps.empty() || !(readings.rate_hz() > 0.0)) continue;
+    GyroJerk jerk(readings.rate_hz(), sensor.speed_scatter2);
+    for (WheelEpoch& epoch : readings.epochs)
+      if (epoch.row[s] != WheelEpoch::no_row)
+        epoch.jerk_psd = std::max(
+            epoch.jerk_psd, jerk.add(sensor.speed_radps[static_cast<std::size_t>(epoch.row[s])]));
+  }
+}
+
+}  // namespace proofmass::estimate

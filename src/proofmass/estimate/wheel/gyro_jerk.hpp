@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "proofmass/estimate/wheel/fit.hpp"
+
+// How irregular a wheel's motion is at each time, from its gyroscope.
+namespace proofmass::estimate {
+
+/// White jerk, rad²/s⁵, that the last 40 ms of a gyroscope show beyond its noise. A wheel pushed by
+/// hand coasts most of the time, and noise parameters of the whole recording are too small in the
+/// pushes: the gyroscope would be rejected there, and its constants and the rolling radius absorb
+/// what is motion. From the second difference Δ of the speed over h = 20 ms, or a step if that is
+/// longer: white jerk of density q gives it the variance 2 q h³ / 3, white noise 6 σ².
+class GyroJerk {
+ public:
+  /// `rate_hz` of the measurements, > 0.
+  GyroJerk(double rate_hz, double noise_variance);
+
+  /// The density up to this measurement; decays within 40 ms after the last irregularity. NaN: a
+  /// missing measurement, after which the differences begin anew.
+  [[nodiscard]] double add(double speed_radps);
+
+ private:
+  std::size_t apart_;         ///< measurements in h
+  double per_square_;         ///< from Δ² to the density
+  double noise2_;             ///< Δ² that noise explains
+  double decay_;              ///< from one measurement to the next
+  std::vector<double> last_;  ///< a ring of 2 `apart_` + 1 speeds
+  std::size_t count_ = 0;     ///< since the beginning or the last missing one
+  double psd_ = 0.0;
+};
+
+/// Sets WheelEpoch::jerk_psd, if there is a gyroscope.
+void mark_jerks(WheelReadings& readings);
+
+}  // namespace proofmass::estimate
