@@ -24,6 +24,9 @@ Stream stream_of(const std::vector<WheelSensor>& sensors) {
   Stream stream{sensors.front().time_s, {}};
   for (const WheelSensor& sensor : sensors)
     for (const auto& axis : sensor.accel_mps2) stream.channels.push_back(axis);
+  for (const WheelSensor& sensor : sensors)
+    for (const auto& axis : sensor.rate_radps)
+      if (!axis.empty()) stream.channels.push_back(axis);
   return stream;
 }
 
@@ -159,6 +162,47 @@ TEST(LiveWheel, FollowsAWheelThatStartsFromRest) {
               0.05);
 }
 
+/// A wheelchair's wheel that is pushed, on a floor that shakes it.
+Stream pushed_with_gyroscope() {
+  Mount mount;
+  mount.place_m = 0.05;
+  mount.noise_mps2 = 0.3;
+  return stream_of({test::record_with_gyroscope(
+      test::pushes(), mount, 200.0, {.rolling_radius_m = 0.3}, [](double) { return 0.0; })});
+}
+
+TEST(LiveWheel, AGyroscopeKeepsAWheelThatIsPushedByHand) {
+  LiveWheelOptions options = options_for(1, std::nullopt);
+  options.gyroscopes = {{"gyroscope", 3, 4, 5}};
+  const Drive drive = test::pushes();
+  const Followed one = follow(pushed_with_gyroscope(), options);
+  EXPECT_FALSE(one.fed.says("turns may be lost"));
+  EXPECT_GT(coverage(one, drive, 6.0), 0.93);
+  EXPECT_NEAR((one["angle"].back() - one["angle"].front()) / rad_per_turn,
+              drive.turns(0.0, drive.duration_s()), 0.02);
+  EXPECT_LT(one["angle_std"].back(), 0.1);
+}
+
+TEST(LiveWheel, AGyroscopeIsNotUsedAtTheEndOfItsRange) {
+  Stream stream = pushed_with_gyroscope();
+  for (double& rate : stream.channels[5]) rate = std::min(rate, 6.0);
+  LiveWheelOptions options = options_for(1, std::nullopt);
+  options.gyroscopes = {{"gyroscope", 3, 4, 5}};
+  const Followed one = follow(stream, options);
+  EXPECT_TRUE(one.fed.says("at the limit of its range"));
+  EXPECT_GT(coverage(one, test::pushes(), 6.0), 0.93);
+}
+
+TEST(LiveWheel, AGyroscopeThatMeasuresNothingIsNotUsed) {
+  Stream stream = one_sensor();
+  for (int axis = 0; axis < 3; ++axis)
+    stream.channels.emplace_back(stream.stamps_s.size(), std::nan(""));
+  LiveWheelOptions options = options_for(1);
+  options.gyroscopes = {{"gyroscope", 3, 4, 5}};
+  const Followed without = follow(one_sensor(), options_for(1)), with = follow(stream, options);
+  EXPECT_TRUE(test::same(with.fed.rows, without.fed.rows));
+}
+
 TEST(LiveWheel, FastSamplesAreAveraged) {
   const Drive drive{{0.3, 20 * rpm}, {{8.0, 20 * rpm}}};
   const Followed one = follow(one_sensor(drive, 2000.0), options_for(1), 500);
@@ -234,6 +278,12 @@ TEST(LiveWheel, RefusesWhatItCannotUse) {
   LiveWheelOptions no_y = options_for(1);
   no_y.sensors[0].y.reset();
   EXPECT_FALSE(live_wheel(no_y));
+  LiveWheelOptions two_axes = options_for(1);
+  two_axes.gyroscopes = {{"gyroscope", 3, 4, {}}};
+  EXPECT_FALSE(live_wheel(two_axes));
+  LiveWheelOptions one_of_two = options_for(2);
+  one_of_two.gyroscopes = {{"gyroscope", 6, 7, 8}};
+  EXPECT_FALSE(live_wheel(one_of_two));
   LiveWheelOptions lag = options_for(1);
   lag.lag_s = std::nan("");
   EXPECT_FALSE(live_wheel(lag));

@@ -120,9 +120,7 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
 }
 
 void note_gyroscope(const PlanarReadings& readings, WheelSensorFit& fit, WheelSolution& solution) {
-  const auto read =
-      std::ranges::count_if(readings.speed_radps, [](double speed) { return !std::isnan(speed); });
-  fit.has_gyro = read > 0;
+  fit.has_gyro = !readings.speed_radps.empty();
   const std::size_t saturated = readings.saturated_speeds;
   if (saturated == 0) return;
   solution.notes.push_back(
@@ -217,6 +215,7 @@ void judge_turns(const WheelFit& fit, const std::string& where, WheelSolution& s
   solution.angle_final_rad.reset();
   solution.distance_m.reset();
   solution.peak_speed_radps.reset();
+  solution.rolling_radius_m.reset();
   for (WheelSensorFit& sensor : solution.sensors) {
     sensor.radius_m = fit.given_radius_m;
     for (auto* figure : {&sensor.mounting_rad, &sensor.skew_rad, &sensor.phase_rad,
@@ -234,12 +233,24 @@ void judge_turns(const WheelFit& fit, const std::string& where, WheelSolution& s
 }
 
 /// The rolling radius that the results are for; with a gyroscope as estimated.
-Uncertain rolling_radius_m(const WheelReadings& readings, const WheelFit& fit) {
+Uncertain rolling_radius_of(const WheelReadings& readings, const WheelFit& fit) {
   const auto has_gyro = [](const PlanarReadings& sensor) { return !sensor.speed_radps.empty(); };
   if (std::ranges::none_of(readings.sensors, has_gyro)) return readings.rolling_radius_m;
   const auto count = static_cast<int>(readings.sensors.size());
   const Eigen::Index at = wheel::rolling(count) - wheel::first_of(0);
-  return {readings.rolling_radius_m.value + fit.constants(at), std::sqrt(fit.constants_cov(at, at))};
+  return {readings.rolling_radius_m.value + fit.constants(at),
+          std::sqrt(fit.constants_cov(at, at))};
+}
+
+/// The rolling radius, if the recording shows that the wheel rolls and how.
+std::optional<Uncertain> estimated_rolling_radius(const WheelReadings& readings,
+                                                  const WheelFit& fit) {
+  constexpr double significant = 3.0;
+  if (readings.given_rolling_radius_m) return std::nullopt;
+  if (readings.found_rolling_radius_m) return readings.rolling_radius_m;
+  const Uncertain estimated = rolling_radius_of(readings, fit);
+  if (estimated.value < significant * estimated.std) return std::nullopt;
+  return estimated;
 }
 
 /// A wheel that vibrates is most likely on a vehicle, whose acceleration tilts the apparent
@@ -249,15 +260,13 @@ void note_travel(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
   double strongest = 0.0;
   for (const double accel : solution.series.accel_radps2)
     strongest = std::max(strongest, std::abs(accel));
-  const Uncertain rolling = rolling_radius_m(readings, fit);
-  const bool estimated = rolling.std < 0.5 * readings.rolling_radius_m.std;
+  const Uncertain rolling = rolling_radius_of(readings, fit);
   const double lean_deg = rolling.std * strongest / readings.gravity_mps2 / rad_per_deg;
   solution.notes.push_back(
       {Severity::info,
        "the wheel vibrates like a vehicle's, whose acceleration and braking tilt the "
        "apparent gravity by rolling radius x angular acceleration / g: the rolling radius is " +
-           std::string(readings.found_rolling_radius_m || estimated ? "estimated" : "assumed") +
-           " as " +
+           std::string(solution.rolling_radius_m ? "estimated" : "assumed") + " as " +
            std::to_string(std::lround(rolling.value * 1e3)) + " mm ± " +
            std::to_string(std::lround(rolling.std * 1e3)) +
            " mm, which makes the angle uncertain by up to " +
@@ -330,6 +339,7 @@ Result<WheelSolution> conclude(const WheelReadings& readings,
     channels[i].name = solution.sensors[i / each].name + names[i % each];
   solution.not_observable = say_not_observable(fit, solution.sensors);
   add_gated(solution);
+  solution.rolling_radius_m = estimated_rolling_radius(readings, fit);
   note_travel(readings, fit, solution);
   if (const Status radius = check_radius(fit, options, solution); !radius) return radius.error();
   judge_turns(fit, doubtful, solution);

@@ -143,6 +143,9 @@ struct WheelSolution {
   std::optional<Uncertain> angle_final_rad;
   std::optional<Uncertain> peak_speed_radps;
   Uncertain delay_s{};  ///< of the sensors' filters, as given or as estimated
+  /// As estimated, with a gyroscope or an encoder on a vehicle whose speed changes; absent if
+  /// given.
+  std::optional<Uncertain> rolling_radius_m;
   std::vector<WheelSensorFit> sensors;
   std::optional<WheelEncoderFit> encoder;
   WheelMethod double_integration, atan2, ekf, smoother;

@@ -141,6 +141,42 @@ inline WheelSensor record(const Drive& drive,
   return sensor;
 }
 
+/// The same with a gyroscope: spin about the inclined axle and, at `vehicle_radps(t)`, the vehicle
+/// about the vertical, whose direction rotates in the wheel's plane.
+template <class Rate>
+WheelSensor record_with_gyroscope(const Drive& drive,
+                                  const Mount& mount,
+                                  double rate_hz,
+                                  const Site& site,
+                                  const Rate& vehicle_radps) {
+  constexpr double noise_radps = 0.01;
+  WheelSensor sensor = record(drive, mount, rate_hz, 3, site);
+  Normal normal(5);
+  const double up = std::sin(site.axle_tilt_rad), across = std::cos(site.axle_tilt_rad);
+  for (const double t : sensor.time_s) {
+    const Turning now = drive.at(t);
+    const double vehicle = vehicle_radps(t);
+    const std::array<double, 3> rate{vehicle * across * std::sin(now.angle_rad),
+                                     vehicle * across * std::cos(now.angle_rad),
+                                     now.speed_radps + vehicle * up};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      sensor.rate_radps[axis].push_back(rate[axis] + noise_radps * normal());
+  }
+  return sensor;
+}
+
+/// A wheel pushed by hand a dozen times, from rest to rest.
+inline Drive pushes() {
+  Drive drive{{0.3, 0.0}, {{2.0, 0.0}}, 0.0, 0.0};
+  for (int push = 0; push < 12; ++push) {
+    drive.stages.push_back({0.25, 6.5});
+    drive.stages.push_back({1.2, 4.0});
+  }
+  drive.stages.push_back({3.0, 0.0});
+  drive.stages.push_back({2.0, 0.0});
+  return drive;
+}
+
 /// The sensor's axes turned by Euler angles about z, then y, then x.
 inline std::array<std::array<double, 3>, 3> tilted(double about_z, double about_y, double about_x) {
   const double cz = std::cos(about_z), sz = std::sin(about_z), cy = std::cos(about_y),

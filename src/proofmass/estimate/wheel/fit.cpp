@@ -377,6 +377,12 @@ void assume_rolling_radius(WheelReadings& readings) {
         combined(readings.rolling_radius_m, *readings.found_rolling_radius_m);
 }
 
+double rolling_prior_std_m(const WheelReadings& readings) {
+  constexpr double unknown_m = 0.2;
+  const double assumed_m = readings.rolling_radius_m.std;
+  return readings.given_rolling_radius_m ? assumed_m : std::max(assumed_m, unknown_m);
+}
+
 WheelFit fit_wheel(WheelReadings& readings,
                    WheelTrack track,
                    const PlacesPrior& places_prior,

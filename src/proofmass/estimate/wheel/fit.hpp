@@ -60,6 +60,10 @@ inline constexpr ConstantsPrior short_way_prior{0.2, 0.01, 0.01, 0.5, 0.1};
 /// Two independent estimates of one quantity, weighted by their precision.
 [[nodiscard]] Uncertain combined(const Uncertain& a, const Uncertain& b);
 
+/// Prior standard deviation of the rolling radius about its assumed value, where a gyroscope makes
+/// it observable: a smooth floor does not show a vehicle.
+[[nodiscard]] double rolling_prior_std_m(const WheelReadings& readings);
+
 /// The rolling radius as given; or assumed from the vibration, a vehicle's, uniform between 0 and
 /// 0.4 m, or a bench's 0, with the uncertainty of a small, smooth wheel, and improved by the one
 /// found.

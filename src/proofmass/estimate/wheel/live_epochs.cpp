@@ -24,13 +24,6 @@ double value_of(const Block& samples, const std::optional<std::size_t>& channel,
   return channel ? samples.channels[*channel][row] : 0.0;
 }
 
-const char* why_not(const LiveVector& vector, const Axis& value) {
-  if (!vector.is_rate) return why_unbelievable(value);
-  return std::ranges::all_of(value, [](double x) { return std::isfinite(x); })
-             ? nullptr
-             : "not a finite number";
-}
-
 std::size_t samples_of_mean(const LiveClock& clock) {
   return static_cast<std::size_t>(
       std::max(1.0, std::ceil(clock.rate_hz / clock.most_rate_hz - 1e-6)));
@@ -136,13 +129,30 @@ void LiveEpochs::sum_up(const Block& samples, std::size_t row, double time_s) {
     const Triad& at = vectors_[i].channels;
     const Axis value{value_of(samples, at.x, row), value_of(samples, at.y, row),
                      value_of(samples, at.z, row)};
-    if (const char* why = why_not(vectors_[i], value); why != nullptr) {
+    if (const char* why = why_not(i, value); why != nullptr) {
       rejected_[i] = {rejected_[i].count + 1, time_s, why};
       continue;
     }
     sums_[i].total += Mat<3>(value[0], value[1], value[2]);
     sums_[i].count += 1.0;
   }
+}
+
+const char* LiveEpochs::why_not(std::size_t vector, const Axis& value) {
+  if (!vectors_[vector].is_rate) return why_unbelievable(value);
+  if (!std::ranges::all_of(value, [](double x) { return std::isfinite(x); }))
+    return "not a finite number";
+  bool at_end = false;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    at_end |= ranges_[vector][axis].ends_at(value[axis]);
+  return at_end ? "at the limit of its range" : nullptr;
+}
+
+bool LiveEpochs::Range::ends_at(double rate_radps) {
+  equal_ = rate_radps == last_radps_ ? equal_ + 1 : 0;
+  last_radps_ = rate_radps;
+  most_radps_ = std::max(most_radps_, std::abs(rate_radps));
+  return equal_ >= 2 && std::abs(rate_radps) == most_radps_;
 }
 
 bool LiveEpochs::close() {

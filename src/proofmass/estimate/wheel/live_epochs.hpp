@@ -67,6 +67,15 @@ class LiveEpochs {
     Mat<3> total = Mat<3>::Zero();
     double count = 0.0;
   };
+  /// Whether a gyroscope's axis is at the end of its range: three equal measurements, none larger.
+  class Range {
+   public:
+    bool ends_at(double rate_radps);
+
+   private:
+    double most_radps_ = 1.0, last_radps_ = 0.0;
+    int equal_ = 0;
+  };
   struct Rejected {
     std::size_t count = 0;
     double last_s = 0.0;
@@ -78,6 +87,7 @@ class LiveEpochs {
   [[nodiscard]] bool follows(double time_s);
   void learn_rate(double time_s);
   void sum_up(const Block& samples, std::size_t row, double time_s);
+  [[nodiscard]] const char* why_not(std::size_t vector, const std::array<double, 3>& value);
   [[nodiscard]] bool close();
 
   std::vector<LiveVector> vectors_;
@@ -96,6 +106,7 @@ class LiveEpochs {
   bool anew_ = false, mean_is_anew_ = false;
   LiveEpoch epoch_;
 
+  std::array<std::array<Range, 3>, most_live_vectors> ranges_{};
   std::array<Rejected, most_live_vectors> rejected_{};
   Rejected backwards_;
   std::vector<Note> notes_;

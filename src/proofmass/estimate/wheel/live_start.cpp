@@ -51,12 +51,6 @@ WheelSensor sensor_of(const std::vector<LiveEpoch>& epochs,
   return sensor;
 }
 
-/// Variance of the gyroscope's measurements; 0 if there are none.
-double speed_variance_of(const PlanarReadings& readings) {
-  const bool measured = std::ranges::any_of(readings.speed_radps,
-                                            [](double speed) { return !std::isnan(speed); });
-  return measured ? readings.speed_variance : 0.0;
-}
 
 std::vector<Note> notes_of(const std::vector<WheelSensor>& sensors,
                            const Pair& pair,
@@ -115,7 +109,7 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
   for (std::size_t s = 0; s < count; ++s) {
     const PlanarReadings& readings = joint.readings.sensors[s];
     start.variance_m2ps4[s] = static_cast<double>(each) * *median(readings.variance_m2ps4);
-    start.speed_variance[s] = static_cast<double>(each) * speed_variance_of(readings);
+    start.speed_variance[s] = static_cast<double>(each) * readings.speed_variance;
     start.speed_scatter2[s] = static_cast<double>(each) * readings.speed_scatter2;
     start.leak_u[s] = readings.leak_u;
     start.leak_v[s] = readings.leak_v;
@@ -128,7 +122,7 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
   start.prior.beginning = {joint.fit.series.angle_rad.front(), 0.2,
                            joint.fit.series.speed_radps.front(), 1.0};
   if (!start.whole_turn) start.prior.spread = short_way_prior;
-  start.prior.spread.rolling_m = joint.readings.rolling_radius_m.std;
+  start.prior.spread.rolling_m = rolling_prior_std_m(joint.readings);
   for (std::size_t s = 0; s < count; ++s)
     start.prior.spread.axle_slopes[s] = joint.readings.sensors[s].axle_slope;
   start.prior.places = places_in(joint.fit, count);

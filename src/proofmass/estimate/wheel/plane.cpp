@@ -263,6 +263,11 @@ void add_speeds(const WheelSensor& sensor,
       seconds.push_back(speed - 2.0 * readings.speed_radps[row - 1] +
                         readings.speed_radps[row - 2]);
   }
+  if (std::ranges::all_of(readings.speed_radps, [](double speed) { return std::isnan(speed); })) {
+    for (auto* rates : {&readings.speed_radps, &readings.rate_u_radps, &readings.rate_v_radps})
+      rates->clear();
+    return;
+  }
   if (turns_round(sensor.time_s, readings.speed_radps)) {
     readings.leak_u = leak_of(readings.rate_u_radps, readings.speed_radps);
     readings.leak_v = leak_of(readings.rate_v_radps, readings.speed_radps);

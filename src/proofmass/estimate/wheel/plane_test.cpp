@@ -164,10 +164,30 @@ TEST(WheelPlane, LeavesOutWhatAGyroscopeReadsAtTheEndOfItsRange) {
   EXPECT_EQ(readings.saturated_speeds, saturated);
 }
 
+// Axes that are not perpendicular to the axle by a hundredth, and a vehicle that turns once.
+TEST(WheelPlane, KeepsOfTheRatesInThePlaneWhatATurningVehicleAdds) {
+  WheelSensor sensor = record(turning, {}, 100.0, 1);
+  const auto vehicle = [](double t) { return t > 2.0 && t < 2.5 ? 1.5 : 0.0; };
+  test::Normal normal(2);
+  for (const double t : sensor.time_s) {
+    const double speed = 2.0 + std::sin(t);
+    sensor.rate_radps[0].push_back(0.01 * speed + 0.02 + vehicle(t) + 0.005 * normal());
+    sensor.rate_radps[1].push_back(-0.02 * speed + 0.005 * normal());
+    sensor.rate_radps[2].push_back(speed);
+  }
+  const PlanarReadings readings =
+      project(sensor, screen_rows(sensor), plane_of(sensor, Axis{0.0, 0.0, 1.0}));
+  EXPECT_NEAR(readings.leak_u.share, 0.01, 0.003);
+  EXPECT_NEAR(readings.leak_u.bias_radps, 0.02, 0.006);
+  EXPECT_NEAR(readings.leak_v.share, -0.02, 0.003);
+  for (std::size_t row = 0; row < sensor.time_s.size(); ++row)
+    EXPECT_NEAR(readings.rate_u_radps[row], vehicle(sensor.time_s[row]), 0.03) << row;
+}
+
 TEST(WheelPlane, IgnoresAConstantGyroscope) {
   const PlanarReadings readings = with_gyroscope([](double) { return 0.5; });
-  EXPECT_EQ(readings.saturated_speeds, readings.speed_radps.size());
-  for (const double speed : readings.speed_radps) EXPECT_TRUE(std::isnan(speed));
+  EXPECT_EQ(readings.saturated_speeds, readings.u_mps2.size());
+  EXPECT_TRUE(readings.speed_radps.empty());
 }
 
 struct Spoilt {

@@ -25,7 +25,7 @@ struct RateLeak {
 struct PlanarReadings {
   std::vector<double> u_mps2, v_mps2;  ///< NaN where missing
   std::vector<double> variance_m2ps4;  ///< of each measurement, both axes alike
-  /// Gyroscope rate about the axle, NaN where missing; empty without one.
+  /// Gyroscope rate about the axle, NaN where missing; empty without one that measures.
   std::vector<double> speed_radps{};
   double speed_variance = 0.0;  ///< variance of each, rad²/s², with what the model leaves
   double speed_scatter2 = 0.0;  ///< variance by neighbouring measurements: the gyroscope's noise

@@ -123,8 +123,6 @@ std::int64_t append_average(const PlanarReadings& sensor,
   return static_cast<std::int64_t>(out.u_mps2.size()) - 1;
 }
 
-/// Prior standard deviation of the rolling radius about 0: a bench's or a vehicle's.
-constexpr double unknown_rolling_m = 0.2;
 /// Share of unexplained measurements below which no further noise parameters are tried.
 constexpr double clearly_found = 0.3;
 
@@ -134,7 +132,7 @@ WheelTrack seek_track(WheelReadings& readings, std::size_t first) {
   best.lost = std::numeric_limits<double>::infinity();
   ConstantsPrior prior = seeking_prior;
   prior.axle_slopes[0] = readings.sensors[0].axle_slope;
-  if (!readings.sensors[0].speed_radps.empty()) prior.rolling_m = unknown_rolling_m;
+  if (!readings.sensors[0].speed_radps.empty()) prior.rolling_m = rolling_prior_std_m(readings);
   for (std::size_t i = first; i < seeks.size(); ++i) {
     const Seek& seek = seeks[i];
     set_variance(readings, seek.accel_std_mps2);

@@ -247,6 +247,14 @@ Fields wheel_fields(const WheelReport& report) {
       field::measured(
           "delay_s", solution.delay_s, "s",
           {.meaning = "of the sensors' filters, given, assumed or shown by an encoder"}),
+      field::measured(
+          "rolling_radius_m", solution.rolling_radius_m, "m",
+          {.meaning = "of a vehicle's wheel, where its acceleration shows it",
+           .label = "Rolling radius",
+           .why_null = report.options.rolling_radius_m
+                           ? "given"
+                           : "needs a gyroscope or an encoder and changes of a vehicle's speed",
+           .display = millimetres}),
       sensors(report),
       gyroscope(solution),
       encoder(solution),
