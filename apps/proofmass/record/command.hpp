@@ -34,8 +34,8 @@ struct RecordCommand {
   std::optional<double> lag_s, radius_m, rolling_radius_m, bandwidth_hz;
   bool no_gyro = false;
   std::string rate_unit = "rad/s";  ///< of a gyroscope without a unit
-  std::string axis;  ///< axle of the wheel, or direction of the motion
-  InputFlags input;  ///< rate, unit, channels, sensors, supply and gravity
+  std::string axis;                 ///< axle of the wheel, or direction of the motion
+  InputFlags input;                 ///< rate, unit, channels, sensors, supply and gravity
   OutputFlags output;
 };
 

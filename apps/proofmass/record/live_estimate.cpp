@@ -54,8 +54,8 @@ Triad gyroscope_of(std::size_t accelerometer,
   const Channel& first = samples.head().channels[(*channels)[0]];
   const sensor::SensorModel* model = sensor_model_of(samples.models(), accelerometer);
   if (model != nullptr && sensor::is_calibrated(model->gyroscope))
-    notes.push_back({Severity::info, fmt::format("gyroscope {} etc.: calibrated by the sensor file",
-                                                 first.name)});
+    notes.push_back({Severity::info,
+                     fmt::format("gyroscope {} etc.: calibrated by the sensor file", first.name)});
   else if (first.unit.quantity != Quantity::angular_rate)
     notes.push_back({Severity::warning,
                      fmt::format("{} etc. have no unit: {} is assumed; change it with --rate-unit",
@@ -67,9 +67,7 @@ Triad gyroscope_of(std::size_t accelerometer,
   return found;
 }
 
-Made make_wheel(const RecordCommand& command,
-                CalibratedBlocks& samples,
-                std::vector<Note>& notes) {
+Made make_wheel(const RecordCommand& command, CalibratedBlocks& samples, std::vector<Note>& notes) {
   estimate::LiveWheelOptions options;
   for (std::size_t k = 0; k < samples.accelerometers().size(); ++k) {
     options.sensors.push_back(samples.accelerometers()[k].triad);
@@ -100,9 +98,7 @@ const Triad& only_accelerometer(const CalibratedBlocks& samples) {
   throw Failure(usage, "several accelerometers (" + names + "): choose one with --channel");
 }
 
-Made make_tilt(const RecordCommand& command,
-               CalibratedBlocks& samples,
-               std::vector<Note>& notes) {
+Made make_tilt(const RecordCommand& command, CalibratedBlocks& samples, std::vector<Note>& notes) {
   estimate::LiveTiltOptions options;
   options.accelerometer = only_accelerometer(samples);
   if (const Triad gyroscope = gyroscope_of(0, command, samples, notes); gyroscope.x)

@@ -121,11 +121,11 @@ Status CalibratedBlocks::add_gyroscope(std::size_t at,
   for (const std::size_t c : channels) {
     const bool is_rate = units_[c].quantity == Quantity::angular_rate;
     if (raw && is_rate)
-      return Error{Errc::invalid_argument,
-                   fmt::format("the sensor file calibrates the gyroscope's {}, and channel {} is "
-                               "in {}",
-                               reading_unit(model->gyroscope), piece.channels[c].name,
-                               units_[c].symbol)};
+      return Error{
+          Errc::invalid_argument,
+          fmt::format("the sensor file calibrates the gyroscope's {}, and channel {} is "
+                      "in {}",
+                      reading_unit(model->gyroscope), piece.channels[c].name, units_[c].symbol)};
     if (!raw && !is_rate) units_[c] = unit_if_unknown;
     head_.channels[c].unit = *parse_unit("rad/s");
   }
@@ -156,8 +156,7 @@ Status CalibratedBlocks::calibrate(const Gyroscope& gyroscope) {
     }
   };
   exchange();
-  Status done =
-      sensor::apply(model_of(gyroscope.accelerometer)->gyroscope, accel_mps2, rates);
+  Status done = sensor::apply(model_of(gyroscope.accelerometer)->gyroscope, accel_mps2, rates);
   exchange();
   return done;
 }

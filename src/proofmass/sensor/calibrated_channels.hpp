@@ -45,9 +45,9 @@ class CalibratedBlocks {
                                                      std::vector<SensorModel> models);
 
   /// Makes three channels, as they come out, the gyroscope of accelerometer `at`, calibrated if its
-  /// model has a gyroscope's figures. Channels of an unknown unit are in that of the calibration or,
-  /// without one, in `unit_if_unknown`. Errors: invalid_argument (a calibration of volts or counts
-  /// for channels in a unit of angular rate, and those of apply()).
+  /// model has a gyroscope's figures. Channels of an unknown unit are in that of the calibration
+  /// or, without one, in `unit_if_unknown`. Errors: invalid_argument (a calibration of volts or
+  /// counts for channels in a unit of angular rate, and those of apply()).
   [[nodiscard]] Status add_gyroscope(std::size_t at,
                                      const std::array<std::size_t, 3>& channels,
                                      const Unit& unit_if_unknown);

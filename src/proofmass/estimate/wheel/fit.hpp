@@ -46,9 +46,9 @@ struct ConstantsPrior {
   double bias_mps2 = 0.5, scale = 0.1, skew_rad = 0.03, phase_rad = 0.5, place_m = 0.3;
   double ripple = 0.0;  ///< of each part, relative to the speed
   double gyro_bias_radps = 0.1, gyro_scale = 0.03;
-  double axle_slope = 0.05;               ///< as a bias along the axle leaves it
-  std::array<double, 2> axle_slopes{};    ///< their means, of each gyroscope
-  double rolling_m = 0.0;                 ///< of the rolling radius; 0: not estimated
+  double axle_slope = 0.05;             ///< as a bias along the axle leaves it
+  std::array<double, 2> axle_slopes{};  ///< their means, of each gyroscope
+  double rolling_m = 0.0;               ///< of the rolling radius; 0: not estimated
   double encoder_offset_rad = 0.5;
   EncoderErrors encoder_errors_rad{};  ///< with their means
 };

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "proofmass/estimate/wheel/gyro_jerk.hpp"
+#include "proofmass/estimate/wheel/model.hpp"
 #include "proofmass/estimate/wheel_test_support.hpp"
 
 // Gyroscopes on wheels of vehicles: pushes, turns, inclined axles.
@@ -42,12 +43,14 @@ double largest_error_rad(const WheelSolution& solution, const Drive& drive) {
 TEST(WheelGyroscope, AVehicleThatTurnsOnTheSpotDoesNotTurnItsWheels) {
   const Drive drive{{0.3, 0.0}, {{1.0, 0.0}, {2.0, 6.0}, {16.0, 2.0}, {1.0, 0.5}, {5.0, 0.5}}};
   const Site site{.axle_tilt_rad = 0.3};
-  const auto solution = estimate_wheel({record_with_gyroscope(drive, mount, 200.0, site, turning_radps)}, {}).value();
+  const auto solution =
+      estimate_wheel({record_with_gyroscope(drive, mount, 200.0, site, turning_radps)}, {}).value();
   EXPECT_TRUE(solution.sensors[0].has_gyro);
   EXPECT_LT(largest_error_rad(solution, drive), 0.1);
   for (std::size_t k = 0; k < solution.series.time_s.size(); ++k)
-    ASSERT_LT(std::abs(solution.series.angle_rad[k] - drive.at(solution.series.time_s[k]).angle_rad),
-              4.0 * solution.series.angle_std_rad[k])
+    ASSERT_LT(
+        std::abs(solution.series.angle_rad[k] - drive.at(solution.series.time_s[k]).angle_rad),
+        4.0 * solution.series.angle_std_rad[k])
         << solution.series.time_s[k];
 }
 
@@ -69,9 +72,26 @@ TEST(WheelGyroscope, PushesOfAVehicleShowItsRollingRadius) {
 
 TEST(WheelGyroscope, AWheelOnABenchHasNoRollingRadius) {
   const Drive drive{{0.3, 0.0}, {{2.0, 0.0}, {4.0, 9.0}, {10.0, 9.0}, {4.0, 0.0}}};
-  const auto solution = estimate_wheel({record_with_gyroscope(drive, mount, 200.0, {}, straight)}, {}).value();
+  const auto solution =
+      estimate_wheel({record_with_gyroscope(drive, mount, 200.0, {}, straight)}, {}).value();
   EXPECT_LT(largest_error_rad(solution, drive), 0.1);
   EXPECT_FALSE(solution.rolling_radius_m);
+}
+
+TEST(MeanAccel, IsThatOfTheSpeedsWithinAFifthOfASecond) {
+  std::vector<double> time_s;
+  std::vector<Mat<wheel::moving>> moving;
+  for (int k = 0; k < 100; ++k) {
+    const double t = 0.01 * k + (k > 50 ? 1.0 : 0.0);  // a gap of a second
+    time_s.push_back(t);
+    moving.emplace_back(0.0, 3.0 * t * t, 100.0, 0.0);
+  }
+  const std::vector<double> mean = mean_accel_radps2(time_s, moving);
+  ASSERT_EQ(mean.size(), time_s.size());
+  EXPECT_NEAR(mean[25], 6.0 * time_s[25], 1e-9);
+  EXPECT_NEAR(mean[0], 3.0 * 0.2, 1e-9);  // over the first 0.2 s
+  EXPECT_NEAR(mean[51], 3.0 * (time_s[51] + time_s[71]), 1e-9);
+  EXPECT_EQ(mean_accel_radps2({1.0}, {moving[0]})[0], 100.0);
 }
 
 TEST(GyroJerk, IsZeroForNoise) {

@@ -143,8 +143,7 @@ const char* LiveEpochs::why_not(std::size_t vector, const Axis& value) {
   if (!std::ranges::all_of(value, [](double x) { return std::isfinite(x); }))
     return "not a finite number";
   bool at_end = false;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    at_end |= ranges_[vector][axis].ends_at(value[axis]);
+  for (std::size_t axis = 0; axis < 3; ++axis) at_end |= ranges_[vector][axis].ends_at(value[axis]);
   return at_end ? "at the limit of its range" : nullptr;
 }
 

@@ -258,7 +258,8 @@ void LiveWheelFilter<S>::judge() {
   const double most_shaking2 = square(most_shaking * now_.gravity_mps2);
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
     if (!model_.has_readings(s, 1)) continue;
-    for (int axis = 0; axis < 2; ++axis) take(noise_[s], variance_m2ps4_[s], recent_, most_shaking2);
+    for (int axis = 0; axis < 2; ++axis)
+      take(noise_[s], variance_m2ps4_[s], recent_, most_shaking2);
     if (model_.has_speed(s, 1))
       take(speed_noise_[s], now_.sensors[s].speed_variance, recent_speed_, most_rate_noise2);
   }

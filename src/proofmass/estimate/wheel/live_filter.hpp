@@ -107,7 +107,7 @@ class LiveWheelFilter {
   Model model_;
   std::size_t epochs_ = 0;
   double time_s_ = 0.0;
-  std::array<double, 2> variance_m2ps4_;  ///< of each sensor's measurements
+  std::array<double, 2> variance_m2ps4_;                      ///< of each sensor's measurements
   std::array<std::optional<std::size_t>, 2> gyroscope_at_{};  ///< among an epoch's vectors
   std::vector<GyroJerk> jerks_;                               ///< one for each sensor
   double alignment_variance_rad2_ = 0.0, delay_std_s_ = 0.0;

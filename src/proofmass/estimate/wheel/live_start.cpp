@@ -51,7 +51,6 @@ WheelSensor sensor_of(const std::vector<LiveEpoch>& epochs,
   return sensor;
 }
 
-
 std::vector<Note> notes_of(const std::vector<WheelSensor>& sensors,
                            const Pair& pair,
                            const WheelOptions& options) {
@@ -84,8 +83,7 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
   const double rate_hz = rate_of(epochs);
   const auto each = static_cast<std::size_t>(std::max(1.0, std::ceil(rate_hz / seek_rate_hz)));
   std::vector<WheelSensor> sensors;
-  for (std::size_t s = 0; s < count; ++s)
-    sensors.push_back(sensor_of(epochs, options, s, each));
+  for (std::size_t s = 0; s < count; ++s) sensors.push_back(sensor_of(epochs, options, s, each));
   WheelOptions wheel = options.wheel;
   wheel.clocks_shared = true;
   wheel.radius_m.reset();  // used better by the filter itself

@@ -30,7 +30,7 @@ struct LiveWheelStart {
   std::array<double, 2> speed_variance{};
   std::array<double, 2> speed_scatter2{};  ///< of neighbouring ones
   std::array<RateLeak, 2> leak_u{}, leak_v{};
-  WheelPrior prior;                        ///< of the state at the first epoch
+  WheelPrior prior;  ///< of the state at the first epoch
   /// Covariance of `constants`, the lever arms included; empty if the hub vibrates: vibration
   /// biases constants that were fitted to a few seconds.
   Eigen::MatrixXd constants_cov;

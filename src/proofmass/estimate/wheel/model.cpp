@@ -19,6 +19,23 @@ std::size_t turned_after(const WheelPath& path, std::size_t first) {
                                   path.moving.begin());
 }
 
+std::vector<double> mean_accel_radps2(const std::vector<double>& time_s,
+                                      const std::vector<Mat<wheel::moving>>& moving) {
+  constexpr double half_s = 0.2;
+  std::vector<double> mean;
+  mean.reserve(time_s.size());
+  std::size_t first = 0, last = 0;  // epochs within half_s of epoch k
+  for (std::size_t k = 0; k < time_s.size(); ++k) {
+    while (time_s[k] - time_s[first] > half_s) ++first;
+    while (last + 1 < time_s.size() && time_s[last + 1] - time_s[k] <= half_s) ++last;
+    const double span_s = time_s[last] - time_s[first];
+    mean.push_back(span_s > 0.0
+                       ? (moving[last](wheel::speed) - moving[first](wheel::speed)) / span_s
+                       : moving[k](wheel::accel));
+  }
+  return mean;
+}
+
 std::vector<Mat<wheel::moving>> moving_at(const std::vector<double>& time_s,
                                           const std::vector<double>& path_time_s,
                                           const std::vector<Mat<wheel::moving>>& path) {

@@ -222,7 +222,8 @@ void remove_leak(const RateLeak& leak,
 
 /// Whether the gyroscope's measurements amount to a whole turn.
 bool turns_round(const std::vector<double>& time_s, const std::vector<double>& speed_radps) {
-  double angle = 0.0, lowest = 0.0, highest = 0.0, last_s = std::numeric_limits<double>::quiet_NaN();
+  double angle = 0.0, lowest = 0.0, highest = 0.0,
+         last_s = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t row = 0; row < time_s.size(); ++row) {
     if (std::isnan(speed_radps[row])) continue;
     if (!std::isnan(last_s)) angle += speed_radps[row] * (time_s[row] - last_s);

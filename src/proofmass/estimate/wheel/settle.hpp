@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "proofmass/core/contract.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
 
@@ -28,6 +31,9 @@ template <int S>
   model.first_turn = turned_after(about, 0);
   model.places_held = true;
   model.with_ripple = true;
+  if (model.with_gyro)
+    model.mean_accel = std::make_shared<const std::vector<double>>(
+        mean_accel_radps2(readings.time_s, about.moving));
   return model;
 }
 

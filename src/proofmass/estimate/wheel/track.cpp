@@ -3,9 +3,9 @@
 
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/estimate/wheel/gyro_jerk.hpp"
 #include "proofmass/estimate/wheel/doubts.hpp"
 #include "proofmass/estimate/wheel/encoder.hpp"
+#include "proofmass/estimate/wheel/gyro_jerk.hpp"
 #include "proofmass/estimate/wheel/likelihood.hpp"
 
 namespace proofmass::estimate {
