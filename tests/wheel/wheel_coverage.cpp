@@ -29,6 +29,7 @@ void compare(const estimate::WheelSolution& said, const Truth& truth, Coverage& 
     }
     into.skew.add(fit.skew_rad, unit.skew_rad);
   }
+  if (said.rolling_radius_m) into.rolling.add(said.rolling_radius_m, truth.rolling_radius_m);
   if (said.encoder)
     for (std::size_t i = 0; i < 4; ++i)
       into.encoder.add(said.encoder->errors_rad[i], truth.encoder_errors_rad[i]);
@@ -49,6 +50,7 @@ void print_one(const char* scenario, std::uint64_t seed, const Coverage& one) {
   print("scale", one.scale);
   print("skew", one.skew);
   if (one.encoder.given() + one.encoder.none > 0) print("encoder", one.encoder);
+  if (one.rolling.given() > 0) print("rolling radius", one.rolling);
   std::printf("\n");
 }
 
@@ -60,6 +62,7 @@ void append(Coverage& to, const Coverage& from) {
   to.scale.append(from.scale);
   to.skew.append(from.skew);
   to.encoder.append(from.encoder);
+  to.rolling.append(from.rolling);
   to.recordings += from.recordings;
   to.refused += from.refused;
 }

@@ -34,7 +34,7 @@ TEST_P(WheelCoverage, IsAsStated) {
     EXPECT_LT(tally->largest(), 5.0);
   }
   for (const Tally* tally :
-       {&found.radius, &found.bias, &found.scale, &found.skew, &found.encoder}) {
+       {&found.radius, &found.bias, &found.scale, &found.skew, &found.encoder, &found.rolling}) {
     if (tally->given() == 0) continue;
     EXPECT_GE(tally->coverage_95(), least_coverage(tally->given()));
     EXPECT_LT(tally->largest(), 5.0);

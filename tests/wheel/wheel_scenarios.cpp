@@ -136,6 +136,14 @@ World on_the_road(std::uint64_t seed) {
   return world;
 }
 
+World vehicle_with_gyro(std::uint64_t seed) {
+  World world = rest_to_rest(seed);
+  Draw draw(seed);
+  draw.add_gyro();
+  world.units.front().gyro = draw.unit_one().gyro;
+  return world;
+}
+
 World pushed(std::uint64_t seed) {
   Draw draw(seed);
   World& world = draw.world();
@@ -268,6 +276,8 @@ constexpr std::array all{
     Scenario{"on-the-road", "a vehicle's wheel, in motion throughout", on_the_road, axis_given},
     Scenario{"pushed", "a wheelchair's, stamps of Wi-Fi", pushed, axis_given},
     Scenario{"pushed-gyro", "the same with a gyroscope", pushed_with_gyro, axis_given},
+    Scenario{"rest-to-rest-gyro", "a vehicle's wheel with a gyroscope", vehicle_with_gyro,
+             axis_given},
     Scenario{"gyro", "a bench with a gyroscope", with_gyro, axis_given},
     Scenario{"pair", "two sensors", pair, axis_given},
     Scenario{"encoder", "a bench with an encoder", with_encoder, axis_given},

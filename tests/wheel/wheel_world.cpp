@@ -386,6 +386,7 @@ Recorded record(const World& world, std::uint64_t seed) {
     angle = {angle[1], angle[2], motion.next(t, angle[2])};
   }
   out.truth.units = world.units;
+  out.truth.rolling_radius_m = world.rolling_radius_m;
   if (world.encoder) {
     out.encoder = estimate::WheelEncoder{
         "encoder", signal::fixes_of_samples(out.sensors[0].time_s, seen_rad, count_rad, 0.0),

@@ -65,7 +65,7 @@ struct World {
 
 /// True values of a recording.
 struct Truth {
-  double turns = 0.0, final_angle_rad = 0.0;
+  double turns = 0.0, final_angle_rad = 0.0, rolling_radius_m = 0.0;
   /// Angle of the first unit's u axis at the times of all rows, including missing ones.
   std::vector<double> time_s, angle_rad;
   std::vector<Unit> units;
