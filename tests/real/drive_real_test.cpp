@@ -61,6 +61,18 @@ estimate::GnssFixes fixes_of(const char* trial) {
   return fixes;
 }
 
+// Gyroscopes and accelerometers on the wheels alone; with fixes the distance is 143.3 m.
+TEST(CarDrive, TheWheelsShowTheirOwnCircumference) {
+  if (!std::filesystem::exists(folder_of("trial06"))) GTEST_SKIP() << absent(folder_of("trial06"));
+  std::vector<estimate::DriveWheel> wheels;
+  for (const int number : {1, 2, 3}) wheels.push_back(wheel_of("trial06", number));
+  const auto solved = estimate::estimate_drive(wheels, std::nullopt, std::nullopt, {});
+  ASSERT_TRUE(solved.has_value()) << solved.error().message;
+  ASSERT_TRUE(solved->distance_m);
+  EXPECT_NEAR(solved->distance_m->value, 143.3, 2.5 * solved->distance_m->std);
+  EXPECT_LT(solved->distance_m->std, 10.0);
+}
+
 TEST(CarDrive, DoesNotFollowTheWanderOfTheFixes) {
   if (!std::filesystem::exists(folder_of("trial06"))) GTEST_SKIP() << absent(folder_of("trial06"));
   std::vector<estimate::DriveWheel> wheels;

@@ -220,6 +220,16 @@ double radius_from_fixes(const Recorded& recorded, double offset_s) {
   return median(ratios).value_or(unknown_radius_m);
 }
 
+/// Rolling radius of a wheel as given or, without fixes, as its own gyroscope and accelerometer show
+/// it.
+std::optional<Uncertain> known_radius_m(const DriveWheel& wheel,
+                                        const Recorded& recorded,
+                                        std::size_t at) {
+  if (const auto& given = wheel.circumference_m)
+    return Uncertain{given->value / rad_per_turn, given->std / rad_per_turn};
+  return recorded.fixes ? std::nullopt : recorded.wheels[at].rolling_radius_m;
+}
+
 void set_radii(const std::vector<DriveWheel>& wheels, Gathered& all) {
   Vehicle& vehicle = all.setting.vehicle;
   double usual_m = unknown_radius_m, spread = 0.02;
@@ -234,8 +244,8 @@ void set_radii(const std::vector<DriveWheel>& wheels, Gathered& all) {
     spread = 0.2;
   }
   for (std::size_t i = 0; i < wheels.size(); ++i) {
-    const auto& own = wheels[i].circumference_m;
-    vehicle.radius_m[i] = own ? own->value / rad_per_turn : usual_m;
+    const auto own = known_radius_m(wheels[i], all.recorded, i);
+    vehicle.radius_m[i] = own ? own->value : usual_m;
     all.setting.radius_std[i] = own ? own->std / own->value : spread;
   }
 }
@@ -404,9 +414,9 @@ Known known_of(const std::vector<DriveWheel>& wheels,
                const Fitted& fitted) {
   Known known;
   const bool fixes = all.recorded.fixes.has_value();
-  known.scale = fixes || std::ranges::any_of(wheels, [](const DriveWheel& wheel) {
-                  return wheel.circumference_m.has_value();
-                });
+  known.scale = fixes;
+  for (std::size_t i = 0; i < wheels.size(); ++i)
+    known.scale |= known_radius_m(wheels[i], all.recorded, i).has_value();
   known.yaw = all.recorded.has_yaw();
   known.both_sides = std::ranges::any_of(
       wheels, [&](const DriveWheel& wheel) { return wheel.side != wheels.front().side; });

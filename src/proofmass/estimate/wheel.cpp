@@ -60,6 +60,9 @@ void add_distance(const WheelOptions& options, WheelSolution& solution) {
   if (rim_m > 0.0) {
     radius = Uncertain{rim_m, 0.0};
     solution.distance_of = "rim";
+  } else if (solution.rolling_radius_m) {
+    radius = solution.rolling_radius_m;
+    solution.distance_of = "rim";
   } else {
     radius = solution.sensors.front().radius_m;
     solution.distance_of = solution.sensors.front().name;
@@ -324,6 +327,7 @@ Result<WheelSolution> conclude(const WheelReadings& readings,
   solution.angle_final_rad =
       Uncertain{solution.series.angle_rad.back(), solution.series.angle_std_rad.back()};
   add_methods(readings, fit, solution);
+  solution.rolling_radius_m = estimated_rolling_radius(readings, fit);
   add_distance(options, solution);
   add_peak_speed(solution);
   solution.consistency = std::move(fit.consistency);
@@ -339,7 +343,6 @@ Result<WheelSolution> conclude(const WheelReadings& readings,
     channels[i].name = solution.sensors[i / each].name + names[i % each];
   solution.not_observable = say_not_observable(fit, solution.sensors);
   add_gated(solution);
-  solution.rolling_radius_m = estimated_rolling_radius(readings, fit);
   note_travel(readings, fit, solution);
   if (const Status radius = check_radius(fit, options, solution); !radius) return radius.error();
   judge_turns(fit, doubtful, solution);

@@ -138,7 +138,9 @@ struct WheelSolution {
   std::optional<Uncertain> turns;  ///< signed, about the spin axis of the first sensor
   /// If the count is ambiguous and `turns` is absent: the possible counts, by falling probability.
   std::vector<TurnsCandidate> turns_candidates;
-  std::optional<Uncertain> distance_m;  ///< path of the rim if given, else of the first sensor
+  /// Path of the rim if its radius, or the rolling radius, is given or estimated; else of the first
+  /// sensor.
+  std::optional<Uncertain> distance_m;
   std::string distance_of;              ///< "rim" or the sensor's name
   std::optional<Uncertain> angle_final_rad;
   std::optional<Uncertain> peak_speed_radps;

@@ -260,6 +260,7 @@ Result<Trace> trace_wheel(const DriveWheel& wheel, const WheelOptions& options) 
     trace.angle_std_rad.push_back(inflation * std_rad);
   trace.speed_radps = solved->series.speed_radps;
   trace.turns = solved->turns;
+  trace.rolling_radius_m = solved->rolling_radius_m;
   for (const Note& note : solved->notes)
     if (note.severity != Severity::info)
       trace.notes.push_back({note.severity, wheel.sensor.name + ": " + note.text});

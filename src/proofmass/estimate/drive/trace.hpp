@@ -19,6 +19,7 @@ struct Trace {
   double yaw_bias_std_radps = 0.0;  ///< constant part of its error, while the vehicle moves
   double spin_tilt_rad = 0.0;       ///< of the gyroscope's spin axis against the sensor's nearest
   std::optional<Uncertain> turns;
+  std::optional<Uncertain> rolling_radius_m;  ///< as the wheel's own sensors show it
   std::vector<Note> notes;
 };
 
