@@ -1,5 +1,6 @@
 """proofmass record and recover."""
 import json
+import math
 import os
 import pty
 import resource
@@ -213,6 +214,55 @@ class Record(CommandTest):
         columns = self.estimates("sim:static?seconds=20&speed=max", "tilt")
         self.assertEqual(len(columns["roll"]), 4000)
         self.assertLess(columns["roll_std"][-1], 0.05)
+
+    def pushed_wheel(self, unit):
+        """Rows of a wheel of 0.3 m that is pushed by hand, with a gyroscope about its axle in degrees a second."""
+        lines, angle, rate = [f"t (s),ax (m/s^2),ay (m/s^2),az (m/s^2),gx{unit},gy{unit},gz{unit}"], 0.3, 100
+        for k in range(30 * rate):
+            t = k / rate
+            since = (t - 4) % 1.5
+            push = t > 4 and t < 24 and since < 0.3
+            accel = 20 * math.sin(math.pi * since / 0.3) if push else 0
+            speed = self.speed if k else 0
+            if not push:
+                accel = -2 if speed > 0.1 else 0
+            self.speed = max(0, speed + accel / rate)
+            angle += self.speed / rate
+            hub = -0.3 * accel
+            force = (9.81 * math.sin(angle) + hub * math.cos(angle) - 0.05 * speed ** 2,
+                     9.81 * math.cos(angle) - hub * math.sin(angle) + 0.05 * accel)
+            noise = [0.05 * math.sin(k * (k % 97 + n)) for n in range(3)]
+            lines.append(f"{t:.3f},{force[0] + noise[0]:.5f},{force[1] + noise[1]:.5f},{noise[2]:.5f},"
+                         f"{noise[1]:.4f},{noise[0]:.4f},{math.degrees(self.speed) + noise[2]:.4f}")
+        self.turned = angle - 0.3
+        return "\n".join(lines).encode() + b"\n"
+
+    def angle_of_wheel(self, samples, *flags):
+        """Turned angle and its standard deviation at the end, and the warnings."""
+        ran = self.run_command("record", "-", "-o", "run.mcap", "--estimate", "wheel", "--axis", "z", *flags,
+                               stdin=samples)
+        self.assertEqual(ran.returncode, DONE, ran.stderr)
+        self.succeed("convert", "run.mcap", "--variable", "estimates", "-o", "angle.csv")
+        head, *lines = (self.folder / "angle.csv").read_text().splitlines()
+        first, last = (dict(zip((cell.split(" ")[0] for cell in head.split(",")), line.split(",")))
+                       for line in (lines[0], lines[-1]))
+        (self.folder / "run.mcap").unlink()
+        return float(last["angle"]) - float(first["angle"]), float(last["angle_std"]), ran.stderr.decode()
+
+    def test_a_gyroscope_follows_a_wheel_that_is_pushed(self):
+        turned, std, said = self.angle_of_wheel(self.pushed_wheel(" (deg/s)"))
+        self.assertAlmostEqual(turned, self.turned, delta=0.2)
+        self.assertLess(std, 0.2)
+        self.assertNotIn("turns may be lost", said)
+        self.assertGreater(self.angle_of_wheel(self.pushed_wheel(" (deg/s)"), "--no-gyro")[1], std)
+
+    def test_the_unit_of_a_gyroscope_that_has_none_can_be_said(self):
+        samples = self.pushed_wheel("").replace(b"gx,gy,gz", b"gyr_x,gyr_y,gyr_z")
+        turned, std, said = self.angle_of_wheel(samples, "--rate-unit", "deg/s")
+        self.assertIn("have no unit: deg/s is assumed", said)
+        self.assertAlmostEqual(turned, self.turned, delta=0.2)
+        self.assertLess(std, 0.2)
+        self.expect_failure(USAGE, "record", "-", "--no-file", "--rate-unit", "deg/s", stdin=b"")
 
     def test_an_estimate_needs_an_accelerometer(self):
         error = self.expect_failure(

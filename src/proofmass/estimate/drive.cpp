@@ -220,8 +220,8 @@ double radius_from_fixes(const Recorded& recorded, double offset_s) {
   return median(ratios).value_or(unknown_radius_m);
 }
 
-/// Rolling radius of a wheel as given or, without fixes, as its own gyroscope and accelerometer show
-/// it.
+/// Rolling radius of a wheel as given or, without fixes, as its own gyroscope and accelerometer
+/// show it.
 std::optional<Uncertain> known_radius_m(const DriveWheel& wheel,
                                         const Recorded& recorded,
                                         std::size_t at) {

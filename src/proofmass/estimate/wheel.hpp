@@ -141,7 +141,7 @@ struct WheelSolution {
   /// Path of the rim if its radius, or the rolling radius, is given or estimated; else of the first
   /// sensor.
   std::optional<Uncertain> distance_m;
-  std::string distance_of;              ///< "rim" or the sensor's name
+  std::string distance_of;  ///< "rim" or the sensor's name
   std::optional<Uncertain> angle_final_rad;
   std::optional<Uncertain> peak_speed_radps;
   Uncertain delay_s{};  ///< of the sensors' filters, as given or as estimated

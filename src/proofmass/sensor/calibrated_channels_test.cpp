@@ -82,5 +82,51 @@ TEST(CalibratedBlocks, AreThoseOfTheWholeRecordingBlockByBlock) {
   }
 }
 
+/// An accelerometer and a gyroscope whose headings have this unit, or none.
+Recording with_gyroscope(const char* unit) {
+  Recording recording = recording_in("m/s^2", {});
+  recording.channels.resize(3);
+  for (const char* name : {"gyro_x", "gyro_y", "gyro_z"})
+    recording.channels.push_back({name, parse_unit(unit).value_or(Unit{}), std::vector<double>{}});
+  return recording;
+}
+
+SensorModel model_with_gyroscope(const char* unit, const char* gain) {
+  SensorModel made = model();
+  made.gyroscope.bias = make_axis_figures({1.0, 0.0, 0.0}, unit, "test");
+  made.gyroscope.scale = make_axis_figures({4.0, 1.0, 1.0}, gain, "test");
+  return made;
+}
+
+/// The first rate of blocks whose gyroscope reads 9, 0, 0.
+double first_rate(CalibratedBlocks& blocks) {
+  const std::vector<double> zero{0.0}, nine{9.0}, five{5.0};
+  const Block block =
+      blocks.apply({.channels = {five, zero, zero, nine, zero, zero}, .stamps_s = {}}).value();
+  EXPECT_EQ(block.channels[0][0], 2.0);
+  return block.channels[3][0];
+}
+
+TEST(CalibratedBlocks, AGyroscopeIsCalibratedByItsSectionOfTheSensorFile) {
+  const Unit deg = *parse_unit("deg/s");
+  const auto made = [&](const char* unit, const SensorModel& by) {
+    return CalibratedBlocks::make(with_gyroscope(unit), {0, 1, 2, 3, 4, 5}, {by}).value();
+  };
+  CalibratedBlocks plain = made("", model());
+  ASSERT_TRUE(plain.add_gyroscope(0, {3, 4, 5}, deg));
+  EXPECT_EQ(plain.head().channels[3].unit.symbol, "rad/s");
+  EXPECT_NEAR(first_rate(plain), 9.0 * 3.14159265358979 / 180.0, 1e-14);
+  CalibratedBlocks rates = made("rad/s", model_with_gyroscope("rad/s", "1"));
+  ASSERT_TRUE(rates.add_gyroscope(0, {3, 4, 5}, deg));
+  EXPECT_DOUBLE_EQ(first_rate(rates), 2.0);
+  EXPECT_DOUBLE_EQ(first_rate(rates), 2.0) << "in each block";
+  CalibratedBlocks volts = made("", model_with_gyroscope("V", "V/(rad/s)"));
+  ASSERT_TRUE(volts.add_gyroscope(0, {3, 4, 5}, deg));
+  EXPECT_DOUBLE_EQ(first_rate(volts), 2.0);
+  CalibratedBlocks wrong = made("rad/s", model_with_gyroscope("V", "V/(rad/s)"));
+  EXPECT_EQ(wrong.add_gyroscope(0, {3, 4, 5}, deg).error().message,
+            "the sensor file calibrates the gyroscope's V, and channel gyro_x is in rad/s");
+}
+
 }  // namespace
 }  // namespace proofmass::sensor::calibrated_channels_test
