@@ -22,6 +22,7 @@ GyroJerk::GyroJerk(double rate_hz, double noise_variance)
   PM_EXPECTS(rate_hz > 0.0);
   const double h = static_cast<double>(apart_) / rate_hz;
   per_square_ = 1.5 / (h * h * h);
+  span_s_ = 2.0 * h;
   decay_ = std::exp(-0.5 / static_cast<double>(apart_));
 }
 
@@ -29,13 +30,15 @@ double GyroJerk::add(double speed_radps) {
   psd_ *= decay_;
   if (std::isnan(speed_radps)) {
     count_ = 0;
+    mean_accel_radps2_ = 0.0;
     return psd_;
   }
   const std::size_t size = last_.size(), at = count_ % size;
   last_[at] = speed_radps;
   if (++count_ < size) return psd_;
-  const double second =
-      speed_radps - 2.0 * last_[(at + size - apart_) % size] + last_[(at + 1) % size];
+  const double first = last_[(at + 1) % size], middle = last_[(at + size - apart_) % size];
+  mean_accel_radps2_ = (speed_radps - first) / span_s_;
+  const double second = speed_radps - 2.0 * middle + first;
   psd_ = std::max(psd_, per_square_ * std::max(second * second - noise2_, 0.0));
   return psd_;
 }

@@ -21,6 +21,8 @@ class GyroJerk {
   /// The density up to this measurement; decays within 40 ms after the last irregularity. NaN: a
   /// missing measurement, after which the differences begin anew.
   [[nodiscard]] double add(double speed_radps);
+  /// Mean acceleration, rad/s², over the last 2 h; 0 without measurements.
+  [[nodiscard]] double mean_accel_radps2() const { return mean_accel_radps2_; }
 
  private:
   std::size_t apart_;         ///< measurements in h
@@ -29,6 +31,7 @@ class GyroJerk {
   double decay_;              ///< from one measurement to the next
   std::vector<double> last_;  ///< a ring of 2 `apart_` + 1 speeds
   std::size_t count_ = 0;     ///< since the beginning or the last missing one
+  double span_s_, mean_accel_radps2_ = 0.0;
   double psd_ = 0.0;
 };
 

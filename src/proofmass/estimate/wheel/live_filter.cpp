@@ -87,6 +87,7 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelOptions& options,
   }
   model_ = wheel_model<S>(now_, start.noise);
   model_.places_held = true;
+  if (model_.with_gyro) model_.mean_accel = mean_accel_;
   scale_motion(model_.noise, 1.0);
   model_.noise.bias_walk_psd = std::max(model_.noise.bias_walk_psd, least_bias_walk_psd);
   main_ = prior_state<S>(start.prior);
@@ -144,6 +145,7 @@ void LiveWheelFilter<S>::read(const LiveEpoch& epoch) {
     const double speed = along(rate, axis);
     sensor.speed_radps[0] = speed;
     jerk_psd = std::max(jerk_psd, jerks_[s].add(speed));
+    (*mean_accel_)[1] = jerks_[s].mean_accel_radps2();
     sensor.rate_u_radps[0] = along(rate, u) - sensor.leak_u.at(speed);
     sensor.rate_v_radps[0] = along(rate, v) - sensor.leak_v.at(speed);
   }

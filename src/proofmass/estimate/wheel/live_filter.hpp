@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -110,6 +111,8 @@ class LiveWheelFilter {
   std::array<double, 2> variance_m2ps4_;                      ///< of each sensor's measurements
   std::array<std::optional<std::size_t>, 2> gyroscope_at_{};  ///< among an epoch's vectors
   std::vector<GyroJerk> jerks_;                               ///< one for each sensor
+  /// At epoch 1, by a gyroscope: see WheelModel::mean_accel.
+  std::shared_ptr<std::vector<double>> mean_accel_ = std::make_shared<std::vector<double>>(2, 0.0);
   double alignment_variance_rad2_ = 0.0, delay_std_s_ = 0.0;
 
   FilterState<states> main_;

@@ -250,7 +250,7 @@ Fields wheel_fields(const WheelReport& report) {
       field::measured(
           "rolling_radius_m", solution.rolling_radius_m, "m",
           {.meaning = "of a vehicle's wheel, where its acceleration shows it",
-           .label = "Rolling radius",
+           .label = solution.rolling_radius_m ? "Rolling radius" : "",
            .why_null = report.options.rolling_radius_m
                            ? "given"
                            : "needs a gyroscope or an encoder and changes of a vehicle's speed",
