@@ -252,7 +252,7 @@ std::optional<Uncertain> estimated_rolling_radius(const WheelReadings& readings,
   if (readings.given_rolling_radius_m) return std::nullopt;
   if (readings.found_rolling_radius_m) return readings.rolling_radius_m;
   const Uncertain estimated = rolling_radius_of(readings, fit);
-  if (estimated.value < significant * estimated.std) return std::nullopt;
+  if (!(estimated.value > significant * estimated.std)) return std::nullopt;
   return estimated;
 }
 

@@ -377,10 +377,10 @@ void assume_rolling_radius(WheelReadings& readings) {
         combined(readings.rolling_radius_m, *readings.found_rolling_radius_m);
 }
 
-double rolling_prior_std_m(const WheelReadings& readings) {
+double rolling_prior_std_m(const WheelReadings& readings, bool shakes_known) {
   constexpr double unknown_m = 0.2;
-  const double assumed_m = readings.rolling_radius_m.std;
-  return readings.given_rolling_radius_m ? assumed_m : std::max(assumed_m, unknown_m);
+  if (readings.given_rolling_radius_m) return readings.rolling_radius_m.std;
+  return shakes_known && !readings.shakes ? 0.0 : unknown_m;
 }
 
 WheelFit fit_wheel(WheelReadings& readings,

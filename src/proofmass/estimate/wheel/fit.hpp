@@ -61,8 +61,9 @@ inline constexpr ConstantsPrior short_way_prior{0.2, 0.01, 0.01, 0.5, 0.1};
 [[nodiscard]] Uncertain combined(const Uncertain& a, const Uncertain& b);
 
 /// Prior standard deviation of the rolling radius about its assumed value, where a gyroscope makes
-/// it observable: a smooth floor does not show a vehicle.
-[[nodiscard]] double rolling_prior_std_m(const WheelReadings& readings);
+/// it observable. Of a wheel that does not shake it is not estimated (0), once that is known: on a
+/// bench it would resemble scale and bias of the gyroscope.
+[[nodiscard]] double rolling_prior_std_m(const WheelReadings& readings, bool shakes_known);
 
 /// The rolling radius as given; or assumed from the vibration, a vehicle's, uniform between 0 and
 /// 0.4 m, or a bench's 0, with the uncertainty of a small, smooth wheel, and improved by the one

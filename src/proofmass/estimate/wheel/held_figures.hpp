@@ -124,7 +124,8 @@ class HeldFigures {
     if (readings_.delay_s.std > 0.0)
       changes.push_back(
           [this] { return change_by(&WheelModel<S>::delay_s, readings_.delay_s.std, 1.0); });
-    if (readings_.rolling_radius_m.std > 0.0 && !model().with_gyro)  // else it is a state
+    const bool is_state = settled_.prior.spread.rolling_m > 0.0;
+    if (readings_.rolling_radius_m.std > 0.0 && !is_state)
       changes.push_back([this] { return change_by_rolling_radius(); });
     vary_warm_up(changes);
     // A few at once, as each holds three figures of every epoch.

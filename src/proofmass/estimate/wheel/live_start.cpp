@@ -120,7 +120,7 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
   start.prior.beginning = {joint.fit.series.angle_rad.front(), 0.2,
                            joint.fit.series.speed_radps.front(), 1.0};
   if (!start.whole_turn) start.prior.spread = short_way_prior;
-  start.prior.spread.rolling_m = rolling_prior_std_m(joint.readings);
+  start.prior.spread.rolling_m = rolling_prior_std_m(joint.readings, false);
   for (std::size_t s = 0; s < count; ++s)
     start.prior.spread.axle_slopes[s] = joint.readings.sensors[s].axle_slope;
   start.prior.places = places_in(joint.fit, count);

@@ -126,7 +126,7 @@ Settled<S> settle(WheelReadings& readings, WheelTrack& track, const PlacesPrior&
     assume_rolling_radius(readings);
   }
   change_rolling_radius(readings.rolling_radius_m.value, readings, model, track.path);
-  if (model.with_gyro) prior.spread.rolling_m = rolling_prior_std_m(readings);
+  if (model.with_gyro) prior.spread.rolling_m = rolling_prior_std_m(readings, true);
   const Excerpt<S> excerpt = excerpt_to_tune(model, prior);
   model.noise = tune_noise(model, excerpt, track.tuned).noise;
   const FoundPlaces likeliest = likeliest_places(model, excerpt, prior, belief);
