@@ -11,7 +11,7 @@ namespace {
 
 constexpr double apart_s = 0.02;
 /// A second difference within this many standard deviations may be noise.
-constexpr double most_std = 3.0;
+constexpr double most_std = 5.0;
 
 }  // namespace
 
