@@ -60,7 +60,8 @@ TEST(WheelGyroscope, PushesOfAVehicleShowItsRollingRadius) {
   WheelOptions options;
   options.bandwidth_hz = 1e4;  // the simulated sensor has no filter
   const auto solution =
-      estimate_wheel({record_with_gyroscope(drive, shaken, 200.0, site, straight)}, options).value();
+      estimate_wheel({record_with_gyroscope(drive, shaken, 200.0, site, straight)}, options)
+          .value();
   EXPECT_LT(largest_error_rad(solution, drive), 0.03);
   ASSERT_TRUE(solution.rolling_radius_m);
   EXPECT_NEAR(solution.rolling_radius_m->value, 0.3, 4.0 * solution.rolling_radius_m->std);

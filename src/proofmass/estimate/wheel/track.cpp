@@ -132,7 +132,8 @@ WheelTrack seek_track(WheelReadings& readings, std::size_t first) {
   best.lost = std::numeric_limits<double>::infinity();
   ConstantsPrior prior = seeking_prior;
   prior.axle_slopes[0] = readings.sensors[0].axle_slope;
-  if (!readings.sensors[0].speed_radps.empty()) prior.rolling_m = rolling_prior_std_m(readings, false);
+  if (!readings.sensors[0].speed_radps.empty())
+    prior.rolling_m = rolling_prior_std_m(readings, false);
   for (std::size_t i = first; i < seeks.size(); ++i) {
     const Seek& seek = seeks[i];
     set_variance(readings, seek.accel_std_mps2);
