@@ -379,7 +379,8 @@ void assume_rolling_radius(WheelReadings& readings) {
 
 double rolling_prior_std_m(const WheelReadings& readings, bool shakes_known) {
   constexpr double unknown_m = 0.2;
-  if (readings.given_rolling_radius_m) return readings.rolling_radius_m.std;
+  if (readings.given_rolling_radius_m || readings.found_rolling_radius_m)
+    return readings.rolling_radius_m.std;
   return shakes_known && !readings.shakes ? 0.0 : unknown_m;
 }
 

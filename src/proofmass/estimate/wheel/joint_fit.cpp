@@ -167,11 +167,13 @@ double mean_square(const PlanarReadings& readings) {
 }
 
 Error no_gravity_in(const WheelSensor& sensor) {
+  const bool has_gyro = !sensor.rate_radps[0].empty();
+  std::vector<Advice> advice{Advice{"unit"}, Advice{"spin-axis"}};
+  if (has_gyro) advice.insert(advice.begin(), {Advice{"rate-unit"}, Advice{"no-gyro"}});
   return {Errc::not_observable,
-          sensor.name +
-              ": no rotation of gravity in the plane of the wheel (axle vertical, "
-              "data not in m/s², or not a wheel)",
-          {Advice{"unit"}, Advice{"spin-axis"}}};
+          sensor.name + ": no rotation of gravity in the plane of the wheel (axle vertical, data " +
+              (has_gyro ? "not in m/s² and rad/s" : "not in m/s²") + ", or not a wheel)",
+          std::move(advice)};
 }
 
 Result<Single> fit_single(const WheelSensor& sensor,
