@@ -136,12 +136,16 @@ World on_the_road(std::uint64_t seed) {
   return world;
 }
 
-World vehicle_with_gyro(std::uint64_t seed) {
-  World world = rest_to_rest(seed);
+/// The same world with a gyroscope in its first unit.
+World and_gyro(World world, std::uint64_t seed) {
   Draw draw(seed);
   draw.add_gyro();
   world.units.front().gyro = draw.unit_one().gyro;
   return world;
+}
+
+World vehicle_with_gyro(std::uint64_t seed) {
+  return and_gyro(rest_to_rest(seed), seed);
 }
 
 World pushed(std::uint64_t seed) {
@@ -160,11 +164,7 @@ World pushed(std::uint64_t seed) {
 }
 
 World pushed_with_gyro(std::uint64_t seed) {
-  World world = pushed(seed);
-  Draw draw(seed);
-  draw.add_gyro();
-  world.units.front().gyro = draw.unit_one().gyro;
-  return world;
+  return and_gyro(pushed(seed), seed);
 }
 
 World pair(std::uint64_t seed) {
