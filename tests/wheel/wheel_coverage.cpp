@@ -52,6 +52,7 @@ void print_one(const char* scenario, std::uint64_t seed, const Coverage& one) {
   if (one.encoder.given() + one.encoder.none > 0) print("encoder", one.encoder);
   if (one.rolling.given() > 0) print("rolling radius", one.rolling);
   std::printf("\n");
+  std::fflush(stdout);
 }
 
 void append(Coverage& to, const Coverage& from) {

@@ -25,8 +25,10 @@ constexpr double most_shaking = 0.5;
 constexpr double most_rate_noise2 = 0.01;
 /// White jerk of a wheel turned by hand, rad²/s⁵: the level to which the noise is raised at once.
 constexpr double lively_jerk_psd = 100.0;
-/// Limits of the motion noise.
-constexpr double least_jerk_psd = 1e-4, most_jerk_psd = 1e4, least_bias_walk_psd = 2e-5;
+/// Limits of the motion noise. Noise that was reduced during a cruise takes seconds to grow again:
+/// a gyroscope, which measures the speed by itself, needs no smoother motion than a motor's.
+constexpr double least_jerk_psd = 1e-4, least_jerk_psd_by_gyro = 0.1, most_jerk_psd = 1e4,
+                 least_bias_walk_psd = 2e-5;
 /// Above this the angle is lost.
 constexpr double lost_std_rad = 0.8;
 
@@ -34,9 +36,11 @@ double along(const Mat<3>& vector, const Axis& axis) {
   return vector(0) * axis[0] + vector(1) * axis[1] + vector(2) * axis[2];
 }
 
-void scale_motion(WheelNoise& noise, double factor) {
-  noise.jerk_psd = std::clamp(noise.jerk_psd * factor, least_jerk_psd, most_jerk_psd);
-  noise.snap_psd *= factor;
+template <class Model>
+void scale_motion(Model& model, double factor) {
+  const double least = model.with_gyro ? least_jerk_psd_by_gyro : least_jerk_psd;
+  model.noise.jerk_psd = std::clamp(model.noise.jerk_psd * factor, least, most_jerk_psd);
+  model.noise.snap_psd *= factor;
 }
 
 template <int N>
@@ -88,7 +92,7 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelOptions& options,
   model_ = wheel_model<S>(now_, start.noise);
   model_.places_held = true;
   if (model_.with_gyro) model_.mean_accel = mean_accel_;
-  scale_motion(model_.noise, 1.0);
+  scale_motion(model_, 1.0);
   model_.noise.bias_walk_psd = std::max(model_.noise.bias_walk_psd, least_bias_walk_psd);
   main_ = prior_state<S>(start.prior);
   constexpr int gyro = wheel::gyro(S), of_gyro = wheel::encoder(S) - gyro;
@@ -181,7 +185,7 @@ void LiveWheelFilter<S>::advance_all() {
   Model other = model_;
   for (Rival& rival : rivals_) {
     other.noise = model_.noise;
-    scale_motion(other.noise, rival.factor);
+    scale_motion(other, rival.factor);
     advance(other, k, live_gate, rival.state, other_step_);
     rival.log_likelihood += log_likelihood_of(other_step_);
   }
@@ -324,7 +328,7 @@ void LiveWheelFilter<S>::end_stretch() {
   }
   const Rival& better =
       rivals_[0].log_likelihood >= rivals_[1].log_likelihood ? rivals_[0] : rivals_[1];
-  if (better.log_likelihood > main_log_likelihood_) scale_motion(model_.noise, better.factor);
+  if (better.log_likelihood > main_log_likelihood_) scale_motion(model_, better.factor);
   forget_stretch();
 }
 

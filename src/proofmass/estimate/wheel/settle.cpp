@@ -91,18 +91,22 @@ void change_rolling_radius(double to_m,
 template <int S>
 bool is_not_a_vehicle(const WheelReadings& readings,
                       WheelModel<S> model,
-                      const WheelPrior& prior,
+                      WheelPrior prior,
                       const WheelPath& path) {
   if (!readings.shakes || readings.given_rolling_radius_m || readings.found_rolling_radius_m ||
       model.rolling_radius_m != 0.0)
     return false;
   constexpr std::size_t most_epochs = 20'000;
-  constexpr double clearly = 5.0;  // an epoch; it is below 0.4 for vehicles, about 50 for benches
+  // An epoch. Without a gyroscope it is below 0.4 for vehicles and about 50 for benches. With one,
+  // which shows what acceleration the hub would have: below 0 for vehicles, 0.1 for a bench.
+  const double clearly = model.with_gyro ? 0.02 : 5.0;
   const std::size_t epochs = std::min(model.size(), most_epochs);
+  if (model.with_gyro) prior.spread.rolling_m = 0.0;
   const double fixed = log_likelihood_of(model, prior_state<S>(prior), 0, epochs);
   WheelPath rolling = path;
   model.about = &rolling;
   change_rolling_radius(readings.rolling_radius_m.value, readings, model, rolling);
+  if (model.with_gyro) prior.spread.rolling_m = rolling_prior_std_m(readings, true);
   const double vehicle = log_likelihood_of(model, prior_state<S>(prior), 0, epochs);
   return fixed - vehicle > clearly * static_cast<double>(epochs);
 }
