@@ -246,11 +246,21 @@ void LiveWheelFilter<S>::Recent::end_epoch() {
   sum = channels = 0.0;
 }
 
+template <int S>
+void LiveWheelFilter<S>::Colour::add(double correction, double variance) {
+  constexpr double mean_epochs = 20.0, factor_epochs = 400.0;
+  constexpr double most = 100.0;  // so that a lost phase is soon forgotten
+  if (!(variance > 0.0)) return;
+  mean += (correction / std::sqrt(variance) - mean) / mean_epochs;
+  const double of_white = 1.0 / (2.0 * mean_epochs - 1.0);
+  factor += (std::min(square(mean) / of_white, most) - factor) / factor_epochs;
+}
+
 /// Updates measurement noise and motion noise from the innovations.
 template <int S>
 void LiveWheelFilter<S>::judge() {
   int channel = 0;
-  double clipped = 0.0;
+  double clipped = 0.0, correction = 0.0, correction_variance = 0.0;
   nis_ = 0.0;
   const auto take = [&](Noise& noise, double variance, Recent& recent, double most2) {
     const auto& u = step_.updates[static_cast<std::size_t>(channel)];
@@ -260,6 +270,8 @@ void LiveWheelFilter<S>::judge() {
     clipped += std::min(nis, 4.0 * surprising);
     recent.add(u.innovation, most2);
     if (u.used) noise.add(nis, expected, variance);
+    correction += u.gain(wheel::speed) * u.innovation;
+    correction_variance += square(u.gain(wheel::speed)) * u.expected;
   };
   const double most_shaking2 = square(most_shaking * now_.gravity_mps2);
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
@@ -277,6 +289,7 @@ void LiveWheelFilter<S>::judge() {
   nis_ /= channel;
   recent_.end_epoch();
   recent_speed_.end_epoch();
+  colour_.add(correction, correction_variance);
   notice_surprise(clipped / channel);
 }
 
@@ -334,11 +347,12 @@ void LiveWheelFilter<S>::end_stretch() {
 
 template <int S>
 LiveWheelRow LiveWheelFilter<S>::row() const {
+  const double by_colour = std::max(colour_.factor, 1.0);
   const auto of = [&](const Gaussian<3>& x, int i, double by_places) {
     const double late = x.mean(i + 1) * delay_std_s_;
     const double more =
         by_places + late * late + (i == wheel::angle ? alignment_variance_rad2_ : 0.0);
-    return Uncertain{x.mean(i), std::sqrt(std::max(x.cov(i, i), 0.0) + more)};
+    return Uncertain{x.mean(i), std::sqrt(by_colour * std::max(x.cov(i, i), 0.0) + more)};
   };
   const Mat<2>& by_places = window_places_[(epochs_ - 1) % window_places_.size()];
   const Gaussian<3>& now = window_.state(0);

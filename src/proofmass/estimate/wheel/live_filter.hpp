@@ -85,6 +85,14 @@ class LiveWheelFilter {
     void add(double innovation, double most2);
     void end_epoch();
   };
+  /// Whether the corrections of the speed are white, as those of a filter whose model is right.
+  /// Ripple, slips and the vibration of a vehicle give them the same sign for many epochs.
+  struct Colour {
+    double mean = 0.0;    ///< of the last corrections, each in its standard deviations
+    double factor = 1.0;  ///< square of that mean, smoothed, against that of white corrections
+
+    void add(double correction, double variance);
+  };
 
   void narrow_constants(const Eigen::MatrixXd& found_cov);
   void seat(int place);
@@ -132,6 +140,7 @@ class LiveWheelFilter {
   double first_time_s_ = 0.0, stretch_start_s_ = 0.0, nis_ = 0.0, since_loosened_s_ = 0.0;
   double surprise_ = 1.0;  ///< smoothed NIS per channel
   Recent recent_, recent_speed_;
+  Colour colour_;
   int loosened_ = 0;
   bool lost_ = false;
 };
