@@ -25,6 +25,8 @@ constexpr double significant_change = 0.25, watch_change_s = 2.0;
 constexpr double open_angle_rad = 0.1, least_pause_s = 0.5;
 /// Time from the beginning of a search to the use of its result.
 constexpr double search_s = 1.0;
+/// A filter whose angle was always known better than this has not slipped.
+constexpr double certain_rad = 0.5;
 /// Maximum pause after a failed search.
 constexpr double longest_pause_s = 60.0;
 
@@ -218,10 +220,12 @@ class LiveWheel final : public LiveAnalysis {
     const double rate_hz = static_cast<double>(gathered_.size() - 1) / span_s;
     filter_.emplace(options_, start,
                     static_cast<std::size_t>(std::lround(options_.lag_s * rate_hz)));
-    double apart_rad = 0.0;  // between the new filter and the output, at the last row
+    double apart_rad = 0.0;   // between the new filter and the output, at the last row
+    double widest_rad = 0.0;  // standard deviation of the new filter's angle
     for (std::size_t k = 0; k < gathered_.size(); ++k) {
       const double time_s = gathered_[k].time_s;
       filter_->step(gathered_[k]);
+      widest_rad = std::max(widest_rad, filter_->row().angle_rad.std);
       if (k == 0) {
         gathered_from_rad_ = filter_->angle_rad();
         count_on(time_s);
@@ -233,7 +237,10 @@ class LiveWheel final : public LiveAnalysis {
         apart_rad = filter_->angle_rad() + turned_rad_ - given_rad_[k];
       }
     }
-    if (std::abs(apart_rad) > 0.5 * rad_per_turn) say_slipped(apart_rad);
+    // Where the output was less certain than that, it has stated so.
+    const bool was_open = std::abs(apart_rad) < 3.0 * widest_std_rad_ && widest_rad < certain_rad;
+    if (std::abs(apart_rad) > 0.5 * rad_per_turn && !was_open) say_slipped(apart_rad);
+    widest_std_rad_ = widest_rad;
     if (options_.wheel.radius_m) filter_->use_radius(*options_.wheel.radius_m);
   }
 
@@ -263,6 +270,7 @@ class LiveWheel final : public LiveAnalysis {
   void give(double time_s, Rows& out) {
     const LiveWheelRow row = filter_->row();
     last_ = {time_s, row.angle_rad.value + turned_rad_, row.speed_radps.value};
+    widest_std_rad_ = std::max(widest_std_rad_, row.angle_rad.std);
     out.stamps_s.push_back(time_s);
     const std::array values{*last_.angle_rad,
                             std::hypot(row.angle_rad.std, turns_std_rad_),
@@ -292,8 +300,9 @@ class LiveWheel final : public LiveAnalysis {
   double gathered_from_rad_ = 0.0;  ///< the filter's angle at the first of them, or a later one
   double pause_s_, resume_s_ = -std::numeric_limits<double>::infinity();
   LastRow last_;
-  double turned_rad_ = 0.0;     ///< whole turns between what is given and the filter's angle
-  double turns_std_rad_ = 0.0;  ///< of the whole turns given, since the wheel was lost
+  double turned_rad_ = 0.0;      ///< whole turns between what is given and the filter's angle
+  double widest_std_rad_ = 0.0;  ///< given since the filter started, without that of whole turns
+  double turns_std_rad_ = 0.0;   ///< of the whole turns given, since the wheel was lost
   std::vector<Note> notes_;
   std::vector<std::string> said_;
 };

@@ -41,6 +41,10 @@ struct WheelReadings {
 /// little meanwhile, at a fraction of the cost.
 [[nodiscard]] WheelReadings averaged(const WheelReadings& readings, std::size_t each);
 
+/// Prior standard deviation of each part of the ripple, about zero: a wheel driven by hand or by a
+/// motor.
+inline constexpr double ripple_share = 0.02;
+
 /// Prior standard deviations of a sensor's constants, about zero.
 struct ConstantsPrior {
   double bias_mps2 = 0.5, scale = 0.1, skew_rad = 0.03, phase_rad = 0.5, place_m = 0.3;

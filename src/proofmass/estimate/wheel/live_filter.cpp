@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "proofmass/core/statistics.hpp"
 
@@ -91,6 +92,8 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelOptions& options,
   }
   model_ = wheel_model<S>(now_, start.noise);
   model_.places_held = true;
+  model_.with_ripple = start.with_ripple;
+  model_.orders = start.orders;
   if (model_.with_gyro) model_.mean_accel = mean_accel_;
   scale_motion(model_, 1.0);
   model_.noise.bias_walk_psd = std::max(model_.noise.bias_walk_psd, least_bias_walk_psd);
@@ -345,19 +348,33 @@ void LiveWheelFilter<S>::end_stretch() {
   forget_stretch();
 }
 
+/// Angle and speed of the wheel, from a state without its ripple.
+template <int S>
+std::pair<Uncertain, Uncertain> LiveWheelFilter<S>::motion_of(const Gaussian<3>& x,
+                                                              const Mat<2>& by_places) const {
+  Mat<states> mean = main_.x.mean;
+  mean.template head<3>() = x.mean;
+  const auto now = model_.motion(mean);
+  const auto uncertain = [&](double value, const Mat<states>& slope, double rate, double more) {
+    constexpr int at = wheel::ripple(S), count = 2 * wheel::ripple_orders;
+    const Mat<3> by_motion = slope.template head<3>();
+    double variance = by_motion.dot(x.cov * by_motion);
+    if (model_.with_ripple) {
+      const Mat<count> by_ripple = slope.template segment<count>(at);
+      variance += by_ripple.dot(main_.x.cov.template block<count, count>(at, at) * by_ripple);
+    }
+    variance = std::max(colour_.factor, 1.0) * std::max(variance, 0.0);
+    return Uncertain{value, std::sqrt(variance + square(rate * delay_std_s_) + more)};
+  };
+  return {uncertain(now.angle, now.by_angle, now.speed, by_places(0) + alignment_variance_rad2_),
+          uncertain(now.speed, now.by_speed, now.accel, by_places(1))};
+}
+
 template <int S>
 LiveWheelRow LiveWheelFilter<S>::row() const {
-  const double by_colour = std::max(colour_.factor, 1.0);
-  const auto of = [&](const Gaussian<3>& x, int i, double by_places) {
-    const double late = x.mean(i + 1) * delay_std_s_;
-    const double more =
-        by_places + late * late + (i == wheel::angle ? alignment_variance_rad2_ : 0.0);
-    return Uncertain{x.mean(i), std::sqrt(by_colour * std::max(x.cov(i, i), 0.0) + more)};
-  };
-  const Mat<2>& by_places = window_places_[(epochs_ - 1) % window_places_.size()];
-  const Gaussian<3>& now = window_.state(0);
-  LiveWheelRow row{.angle_rad = of(now, wheel::angle, by_places(0)),
-                   .speed_radps = of(now, wheel::speed, by_places(1))};
+  LiveWheelRow row;
+  const std::size_t newest = (epochs_ - 1) % window_places_.size();
+  std::tie(row.angle_rad, row.speed_radps) = motion_of(window_.state(0), window_places_[newest]);
   row.nis = nis_;
   if (window_.size() <= window_.lag()) {
     const double none = std::numeric_limits<double>::quiet_NaN();
@@ -366,9 +383,8 @@ LiveWheelRow LiveWheelFilter<S>::row() const {
   }
   const std::size_t oldest = epochs_ % window_time_s_.size();
   row.smoothed_time_s = window_time_s_[oldest];
-  const Gaussian<3>& then = window_.state(window_.lag());
-  row.smoothed_angle_rad = of(then, wheel::angle, window_places_[oldest](0));
-  row.smoothed_speed_radps = of(then, wheel::speed, window_places_[oldest](1));
+  std::tie(row.smoothed_angle_rad, row.smoothed_speed_radps) =
+      motion_of(window_.state(window_.lag()), window_places_[oldest]);
   return row;
 }
 

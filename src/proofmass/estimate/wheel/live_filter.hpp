@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "proofmass/core/quantity.hpp"
@@ -105,6 +106,8 @@ class LiveWheelFilter {
   void end_stretch();
   void forget_stretch();
   [[nodiscard]] double predicted_std_rad() const;
+  [[nodiscard]] std::pair<Uncertain, Uncertain> motion_of(const Gaussian<3>& x,
+                                                          const Mat<2>& by_places) const;
   // wheel/live_places.cpp, with what is public of the places:
   void expect();
   [[nodiscard]] bool shows_place(int sensor) const;

@@ -72,14 +72,17 @@ void LiveWheelFilter<S>::learn_place(const Mat<places>& slope, double residual, 
   for (Rival& rival : rivals_) rival.state.x.mean += change;
 }
 
-/// Uncertainty of angle and speed due to the lever arms.
+/// Uncertainty of the wheel's angle and speed due to the lever arms.
 template <int S>
 Mat<2> LiveWheelFilter<S>::places_variance() const {
+  const auto motion = [this](const FilterState<states>& state) {
+    const auto now = model_.motion(state.x.mean);
+    return Mat<2>{now.angle, now.speed};
+  };
+  const Mat<2> here = motion(main_);
   Mat<2, places> slope;
   for (int i = 0; i < places; ++i)
-    slope.col(i) = (moved_[static_cast<std::size_t>(i)].state.x.mean.template head<2>() -
-                    main_.x.mean.template head<2>()) /
-                   place_step_m;
+    slope.col(i) = (motion(moved_[static_cast<std::size_t>(i)].state) - here) / place_step_m;
   return (slope * places_cov_).cwiseProduct(slope).rowwise().sum();
 }
 

@@ -119,7 +119,10 @@ Result<LiveWheelStart> find_wheel(const std::vector<LiveEpoch>& epochs,
   start.whole_turn = std::abs(joint.fit.turns.value) >= 1.0;
   start.prior.beginning = {joint.fit.series.angle_rad.front(), 0.2,
                            joint.fit.series.speed_radps.front(), 1.0};
-  if (!start.whole_turn) start.prior.spread = short_way_prior;
+  start.orders = joint.readings.orders;
+  start.with_ripple = start.whole_turn && !joint.readings.shakes;
+  start.prior.spread = start.whole_turn ? ConstantsPrior{} : short_way_prior;
+  if (start.with_ripple) start.prior.spread.ripple = ripple_share;
   start.prior.spread.rolling_m = rolling_prior_std_m(joint.readings, false);
   for (std::size_t s = 0; s < count; ++s)
     start.prior.spread.axle_slopes[s] = joint.readings.sensors[s].axle_slope;

@@ -36,7 +36,9 @@ struct LiveWheelStart {
   Eigen::MatrixXd constants_cov;
   Eigen::VectorXd constants;  ///< initial linearisation point
   Eigen::MatrixXd places_cov;
-  bool whole_turn = false;  ///< else the constants come from the prior rather than the data
+  RippleOrders orders = first_orders;
+  bool with_ripple = false;  ///< `constants` include it: not if the hub vibrates
+  bool whole_turn = false;   ///< else the constants come from the prior rather than the data
   std::vector<Note> notes;
 };
 

@@ -8,10 +8,6 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Prior standard deviation of each part of the ripple, about zero: a wheel driven by hand or by a
-/// motor.
-constexpr double ripple_share = 0.02;
-
 /// Prior of the constants, depending on how far the wheel turns.
 ConstantsPrior prior_for(const WheelPath& path, const WheelReadings& readings) {
   const auto angle = [](const Mat<wheel::moving>& at) { return at(wheel::angle); };
