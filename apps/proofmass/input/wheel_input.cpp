@@ -94,7 +94,8 @@ estimate::WheelSensor wheel_sensor(const Recording& recording,
     if (order[axis]) sensor.accel_mps2[axis] = recording.channels[*order[axis]].values.copy();
   }
   if (!gyroscope.wanted || triad.axes() < 3) return sensor;
-  if (const auto channels = find_gyroscope(recording, triad))
+  if (const auto channels = find_gyroscope(recording, triad);
+      channels && channels != gyroscope.taken)
     sensor.rate_radps = calibrated_rates_radps(recording, *channels, model, sensor.accel_mps2,
                                                gyroscope.unit_if_unknown, notes);
   return sensor;
@@ -129,6 +130,7 @@ WheelInput wheel_input(const std::vector<std::string>& files,
   keep_notes(recordings, input.notes);
   input.clocks_shared =
       recordings.size() == 1 || share_a_clock(recordings.front(), recordings.back());
+  GyroscopeUse use = gyroscope;
   for (const Accelerometer& one : found) {
     const Recording& recording = recordings[one.recording];
     double begin_s = 0.0;
@@ -137,9 +139,11 @@ WheelInput wheel_input(const std::vector<std::string>& files,
           std::min(*recordings[0].time.start_ns, *recordings[1].time.start_ns);
       begin_s = static_cast<double>(*recording.time.start_ns - first) * s_per_ns;
     }
-    input.sensors.push_back(wheel_sensor(recording, one, begin_s, gyroscope,
+    input.sensors.push_back(wheel_sensor(recording, one, begin_s, use,
                                          sensor_model_of(models, input.sensors.size()),
                                          input.notes));
+    if (recordings.size() == 1 && !input.sensors.back().rate_radps[0].empty())
+      use.taken = find_gyroscope(recording, one.triad);
     if (encoder.wanted && !input.encoder && one.recording == 0)
       input.encoder = wheel_encoder(recording, encoder, flags, begin_s, sensor_model_of(models, 0),
                                     input.notes);

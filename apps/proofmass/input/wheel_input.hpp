@@ -6,6 +6,7 @@
 
 #include "cli/common_flags.hpp"
 #include "input/encoder.hpp"
+#include "input/gyroscope.hpp"
 #include "proofmass/core/recording.hpp"
 #include "proofmass/estimate/wheel.hpp"
 #include "proofmass/sensor/calibrated_channels.hpp"
@@ -26,6 +27,8 @@ struct WheelInput {
 struct GyroscopeUse {
   bool wanted = true;
   std::string unit_if_unknown = "rad/s";
+  /// Those of another accelerometer, not used twice: their noise would count as two measurements'.
+  std::optional<GyroscopeChannels> taken{};
 };
 
 /// An accelerometer with its gyroscope, calibrated by `model` unless that is null; sample k is at

@@ -41,8 +41,8 @@ class Calibrated final : public LiveAnalysis {
   std::unique_ptr<LiveAnalysis> analysis_;
 };
 
-/// The gyroscope of an accelerometer, in rad/s; without channels if it has none, or if it is not
-/// to be used.
+/// The gyroscope of an accelerometer, in rad/s; without channels if it has none, if it is not to be
+/// used, or if it is that of an accelerometer before.
 Triad gyroscope_of(std::size_t accelerometer,
                    const RecordCommand& command,
                    CalibratedBlocks& samples,
@@ -51,6 +51,8 @@ Triad gyroscope_of(std::size_t accelerometer,
   if (command.no_gyro || triad.axes() < 3) return {};
   const auto channels = find_gyroscope(samples.head(), triad);
   if (!channels) return {};
+  for (std::size_t k = 0; k < accelerometer; ++k)
+    if (find_gyroscope(samples.head(), samples.accelerometers()[k].triad) == channels) return {};
   const Channel& first = samples.head().channels[(*channels)[0]];
   const sensor::SensorModel* model = sensor_model_of(samples.models(), accelerometer);
   if (model != nullptr && sensor::is_calibrated(model->gyroscope))
