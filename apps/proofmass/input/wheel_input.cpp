@@ -139,9 +139,8 @@ WheelInput wheel_input(const std::vector<std::string>& files,
           std::min(*recordings[0].time.start_ns, *recordings[1].time.start_ns);
       begin_s = static_cast<double>(*recording.time.start_ns - first) * s_per_ns;
     }
-    input.sensors.push_back(wheel_sensor(recording, one, begin_s, use,
-                                         sensor_model_of(models, input.sensors.size()),
-                                         input.notes));
+    input.sensors.push_back(wheel_sensor(
+        recording, one, begin_s, use, sensor_model_of(models, input.sensors.size()), input.notes));
     if (recordings.size() == 1 && !input.sensors.back().rate_radps[0].empty())
       use.taken = find_gyroscope(recording, one.triad);
     if (encoder.wanted && !input.encoder && one.recording == 0)

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <limits>
+#include <numeric>
 
 #include "proofmass/estimate/wheel/gyro_jerk.hpp"
 #include "proofmass/estimate/wheel/model.hpp"
@@ -77,6 +78,18 @@ TEST(WheelGyroscope, AWheelOnABenchHasNoRollingRadius) {
       estimate_wheel({record_with_gyroscope(drive, mount, 200.0, {}, straight)}, {}).value();
   EXPECT_LT(largest_error_rad(solution, drive), 0.1);
   EXPECT_FALSE(solution.rolling_radius_m);
+}
+
+// The first epochs, where the state explains everything, made the gyroscope's noise half of what it
+// is: its innovations had twice their standard deviation.
+TEST(WheelGyroscope, ItsNoiseIsThatOfItsMeasurements) {
+  const Drive drive{{0.3, 0.0}, {{2.0, 4.0}, {10.0, 9.0}, {10.0, 4.0}}};
+  const auto solution =
+      estimate_wheel({record_with_gyroscope(drive, mount, 100.0, {}, straight)}, {}).value();
+  const auto sum = [](const auto& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+  };
+  EXPECT_NEAR(sum(solution.series.nis) / sum(solution.series.channels_used), 1.0, 0.1);
 }
 
 TEST(MeanAccel, IsThatOfTheSpeedsWithinAFifthOfASecond) {

@@ -111,6 +111,10 @@ void gather(const WheelReadings& readings,
     if (speeds.empty() || std::isnan(speeds[at])) continue;
     const auto& u = step.updates[static_cast<std::size_t>(channel++)];
     if (!u.used) continue;
+    // At the start the state's variance is thousands of times the noise's: a few such epochs would
+    // outweigh all others.
+    constexpr double most_explained = 10.0;
+    if (u.expected > most_explained * readings.sensors[s].speed_variance) continue;
     noise.gyros[s].innovation2 += std::min(u.nis(), 4.0 * wheel_gate.huber) * u.expected;
     noise.gyros[s].explained += u.expected - readings.sensors[s].speed_variance;
     noise.gyros[s].readings += 1.0;
