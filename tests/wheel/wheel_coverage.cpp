@@ -28,6 +28,9 @@ void compare(const estimate::WheelSolution& said, const Truth& truth, Coverage& 
       into.scale.add(fit.scale[axis], unit.scale[axis]);
     }
     into.skew.add(fit.skew_rad, unit.skew_rad);
+    if (!fit.has_gyro) continue;
+    into.gyro.add(fit.gyro_bias_radps, unit.gyro->bias_radps);
+    into.gyro.add(fit.gyro_scale, unit.gyro->scale);
   }
   if (said.rolling_radius_m) into.rolling.add(said.rolling_radius_m, truth.rolling_radius_m);
   if (said.encoder)
@@ -50,6 +53,7 @@ void print_one(const char* scenario, std::uint64_t seed, const Coverage& one) {
   print("scale", one.scale);
   print("skew", one.skew);
   if (one.encoder.given() + one.encoder.none > 0) print("encoder", one.encoder);
+  if (one.gyro.given() + one.gyro.none > 0) print("gyroscope", one.gyro);
   if (one.rolling.given() > 0) print("rolling radius", one.rolling);
   std::printf("\n");
   std::fflush(stdout);
@@ -63,6 +67,7 @@ void append(Coverage& to, const Coverage& from) {
   to.scale.append(from.scale);
   to.skew.append(from.skew);
   to.encoder.append(from.encoder);
+  to.gyro.append(from.gyro);
   to.rolling.append(from.rolling);
   to.recordings += from.recordings;
   to.refused += from.refused;

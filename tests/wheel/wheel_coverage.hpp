@@ -23,7 +23,7 @@ struct Tally {
 };
 
 struct Coverage {
-  Tally turns, angle, radius, bias, scale, skew, encoder, rolling;
+  Tally turns, angle, radius, bias, scale, skew, encoder, gyro, rolling;
   std::size_t recordings = 0, refused = 0;
 };
 

@@ -36,14 +36,14 @@ void print_header(bool live) {
   else
     std::printf(
         "| scenario | refused | turns | final angle | radius | bias | scale | skew | encoder's "
-        "errors | rolling radius |\n"
-        "|---|---|---|---|---|---|---|---|---|---|\n");
+        "errors | gyroscope | rolling radius |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
 void print_row(const Scenario& scenario, const Coverage& found) {
   std::printf("| %s | %zu |", scenario.name, found.refused);
   for (const Tally* tally : {&found.turns, &found.angle, &found.radius, &found.bias, &found.scale,
-                             &found.skew, &found.encoder, &found.rolling})
+                             &found.skew, &found.encoder, &found.gyro, &found.rolling})
     cell(*tally);
   std::printf("\n");
 }

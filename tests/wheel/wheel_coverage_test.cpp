@@ -34,8 +34,8 @@ TEST_P(WheelCoverage, IsAsStated) {
     EXPECT_GE(tally->coverage_95(), least_coverage(tally->given()));
     EXPECT_LT(tally->largest(), 5.0);
   }
-  for (const Tally* tally :
-       {&found.radius, &found.bias, &found.scale, &found.skew, &found.encoder, &found.rolling}) {
+  for (const Tally* tally : {&found.radius, &found.bias, &found.scale, &found.skew, &found.encoder,
+                             &found.gyro, &found.rolling}) {
     if (tally->given() == 0) continue;
     EXPECT_GE(tally->coverage_95(), least_coverage(tally->given()));
     EXPECT_LT(tally->largest(), 5.0);
