@@ -22,6 +22,10 @@ constexpr double least_accel = 2e-3;
 // slower.
 constexpr double usual_longest_s = 2.0, longest_of_memory = 0.4;
 
+// Departures across the mean force, against those that the norm explains by acceleration: from this
+// ratio of their variances on, they may be rotation.
+constexpr double plainly_more = 1.25;
+
 // Departures of the force, rotated to one static frame for the autocorrelation.
 struct Departures {
   std::vector<Mat<3>> vectors;
@@ -72,6 +76,7 @@ BaseAccel base_accel_over(const TiltEpochs& epochs,
   const Mat<3, 3> least = square(least_accel * known.gravity_mps2) * Mat<3, 3>::Identity();
   // The estimate of the first seconds applies from the start on.
   double early_s = 0.0;
+  double found = 0.0, explained = 0.0, moving = 0.0;
   for (std::size_t k = 0; k < epochs.step_s.size() && early_s < memory_s; ++k) {
     const double h = epochs.step_s[k];
     early_s += h;
@@ -99,8 +104,16 @@ BaseAccel base_accel_over(const TiltEpochs& epochs,
       }
       last = &f;
     }
+    if (!gyroscope && epochs.resting[k] == 0) {
+      const auto across = scatter.across(known.gravity_mps2, known.norm_std_mps2);
+      found += across.found;
+      explained += across.explained;
+      ++moving;
+    }
     out.cov_m2ps4.push_back(scatter.covariance(known.gravity_mps2, known.norm_std_mps2) + least);
   }
+  if (found > plainly_more * explained)
+    out.perhaps_rotation_mps2 = std::sqrt((found - explained) / (2.0 * moving));
   const double step_s = median(steps).value_or(0.01);
   const double longest_s = std::max(usual_longest_s, longest_of_memory * mean_memory_s);
   out.time_s = std::max(correlation_time(departures, step_s, longest_s), 0.5 * step_s);
@@ -150,6 +163,16 @@ Mat<3, 3> BaseScatter::covariance(double gravity_mps2, double norm_std_mps2) con
   const Mat<3, 3> across = level * departed * level;
   const double most = 2.0 * gravity_mps2 * (std::abs(excess_.mean()) + norm_std_mps2);
   return along * one + std::min(1.0, most / std::max(across.trace(), 1e-12)) * across;
+}
+
+BaseScatter::Across BaseScatter::across(double gravity_mps2, double norm_std_mps2) const {
+  const double along = norm_.mean();
+  if (!(mean_.norm() > 0.0)) return {};
+  const Mat<3> up = mean_.normalized();
+  const Mat<3, 3> departed = scatter_.mean();
+  const double found = departed.trace() - up.dot(departed * up);
+  const double shown = 2.0 * gravity_mps2 * (std::abs(excess_.mean()) - norm_std_mps2);
+  return {found, std::max(2.0 * along, shown)};
 }
 
 BaseAccel base_accel(const TiltEpochs& epochs,

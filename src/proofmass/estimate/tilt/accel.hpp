@@ -28,6 +28,11 @@ class BaseScatter {
   /// Current covariance of the acceleration, with standard deviation `norm_std` of the norm of
   /// gravity.
   [[nodiscard]] Mat<3, 3> covariance(double gravity_mps2, double norm_std_mps2) const;
+  /// Variance of the force across its mean, and how much of it the norm explains by acceleration.
+  struct Across {
+    double found = 0.0, explained = 0.0;
+  };
+  [[nodiscard]] Across across(double gravity_mps2, double norm_std_mps2) const;
 
  private:
   /// An exponentially weighted mean of the past.
@@ -56,6 +61,9 @@ struct BaseAccel {
   std::vector<Mat<3, 3>> cov_m2ps4;  ///< in sensor axes, at every epoch, over the past M
   double time_s = 0.0;               ///< lag at which its autocorrelation falls to 1/e, 2 s at most
   double reading_std_mps2 = 0.0;     ///< white part, from the scatter of neighbours
+  /// Without gyroscope: standard deviation, along each axis across the mean force, of what the norm
+  /// does not explain by acceleration, and which may be rotation; 0 if it explains most.
+  double perhaps_rotation_mps2 = 0.0;
 };
 
 /// From the departure d of f from its running mean m over T, which with gyroscope rotates with the

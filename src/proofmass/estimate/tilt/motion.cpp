@@ -35,6 +35,17 @@ void set(TiltSolution& solution, std::size_t k, const TiltAngles& angles, bool s
   }
 }
 
+/// Lower limit of the white angular acceleration, rad/s²/√Hz, of a base whose force departs from
+/// its mean by more than the norm explains by acceleration. One-step predictions hardly differ
+/// between rotation and a correlated acceleration, so that the likelihood chooses either: without
+/// this limit the angles of half the recordings were those of no rotation, at a quarter of their
+/// error. An angle σ with the correlation time τ has the angular acceleration σ/τ², of density 2
+/// σ²/τ³; three times its root includes slower and faster parts.
+double least_drive(const BaseAccel& accel, double gravity_mps2) {
+  const double angle_rad = accel.perhaps_rotation_mps2 / gravity_mps2;
+  return 3.0 * std::numbers::sqrt2 * angle_rad / std::pow(accel.time_s, 1.5);
+}
+
 }  // namespace
 
 double tilt_log_likelihood(const StepOf<TiltModel>& step, int readings) {
@@ -94,7 +105,7 @@ TiltMotion fit_tilt_motion(const TiltEpochs& epochs,
     look(middle - width);
     look(middle + width);
   }
-  motion.drive = found;
+  motion.drive = std::max(found, least_drive(accel, known.gravity_mps2));
   return motion;
 }
 
