@@ -54,7 +54,10 @@ Result<TiltSolution> estimate_tilt(const TiltRecord& all, const TiltOptions& giv
   const Result<bool> moving = is_moving(record, options, found, solution);
   if (!moving) return moving.error();
   solution.moving = *moving;
-  if (solution.moving) drop_slow_motion(record, found);
+  if (solution.moving) {
+    drop_slow_motion(record, found);
+    leave_out_hidden_onsets(record, found);
+  }
   if (!solution.moving && found.rests.empty()) {
     found.rests.push_back({0, solution.samples - 1});
     solution.notes.push_back(

@@ -193,4 +193,14 @@ void drop_slow_motion(const TiltRecord& record, signal::RestSearch& found) {
   });
 }
 
+void leave_out_hidden_onsets(const TiltRecord& record, signal::RestSearch& found) {
+  constexpr double hidden_s = 0.4;
+  const auto hidden = static_cast<std::size_t>(hidden_s * usual_rate_hz(record.time_s));
+  for (signal::Rest& rest : found.rests) {
+    const std::size_t most = std::min(hidden, (rest.last - rest.first + 1) / 4);
+    if (rest.first > 0) rest.first += most;
+    if (rest.last + 1 < record.time_s.size()) rest.last -= most;
+  }
+}
+
 }  // namespace proofmass::estimate
