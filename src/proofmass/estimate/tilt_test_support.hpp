@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <ostream>
 #include <vector>
 
 #include "proofmass/core/random.hpp"
@@ -116,6 +118,84 @@ inline MovingBase moving_base(const MovingOptions& o, std::uint64_t seed) {
         g + (rests ? Mat<3>(Mat<3>::Zero()) : Mat<3>(accel + swayed)) + normals(o.reading_std_mps2);
     const Mat<3> w = error * rate + bias + normals(o.rate_noise_radps_rthz / std::sqrt(h));
     out.add(t, f, o.gyroscope ? &w : nullptr, g);
+  }
+  return out;
+}
+
+/// A second simulator: roll and pitch, the acceleration of the base along one horizontal direction
+/// and its vibration are sums of six sines, 60 s at 100 Hz with white noise of 0.02 m/s². The other
+/// table in docs/methods/tilt.md.
+struct Swing {
+  const char* name;
+  double turning_rad = 0.0, fastest_turning_hz = 0.5;  ///< root mean square of roll; half for pitch
+  double accel_mps2 = 0.0, slowest_hz = 0.02, fastest_hz = 0.2;
+  double vibration_mps2 = 0.0;  ///< 5 to 40 Hz, on each axis
+  double rest_s = 0.0;          ///< at either end
+  bool gyroscope = false;
+  double least = 0.93;  ///< minimum coverage by the smoother
+};
+
+inline void PrintTo(const Swing& swing, std::ostream* out) {
+  *out << swing.name;
+}
+
+class Sines {
+ public:
+  Sines(Random& random, double rms, double slowest_hz, double fastest_hz)
+      : amplitude_(rms / std::sqrt(0.5 * static_cast<double>(waves_.size()))) {
+    for (Wave& wave : waves_)
+      wave = {rad_per_turn * slowest_hz * std::pow(fastest_hz / slowest_hz, random.unit()),
+              random.phase()};
+  }
+  [[nodiscard]] double at(double time_s) const {
+    double sum = 0.0;
+    for (const Wave& wave : waves_) sum += std::sin(wave.radps * time_s + wave.phase);
+    return amplitude_ * sum;
+  }
+
+ private:
+  struct Wave {
+    double radps = 0.0, phase = 0.0;
+  };
+  std::array<Wave, 6> waves_{};
+  double amplitude_;
+};
+
+inline MovingBase swung(const Swing& swing, std::uint64_t seed) {
+  constexpr double duration_s = 60.0, step_s = 0.01, gravity_mps2 = 9.80665, onset_s = 1.0;
+  Random random(seed, "swung tilt");
+  const Sines roll(random, swing.turning_rad, 0.05, swing.fastest_turning_hz);
+  const Sines pitch(random, 0.5 * swing.turning_rad, 0.05, swing.fastest_turning_hz);
+  const Sines accel(random, swing.accel_mps2, swing.slowest_hz, swing.fastest_hz);
+  const double direction_rad = random.phase();
+  std::vector<Sines> shaking;
+  for (int axis = 0; axis < 3; ++axis)
+    shaking.emplace_back(random, swing.vibration_mps2, 5.0, 40.0);
+  const auto strength = [&](double t) {
+    const double from_rest_s = std::min(t, duration_s - t) - swing.rest_s;
+    return swing.rest_s > 0.0 ? std::clamp(from_rest_s / onset_s, 0.0, 1.0) : 1.0;
+  };
+  const auto attitude = [&](double t) {  // from level to sensor axes
+    return Mat<3, 3>(rotation_by({-strength(t) * roll.at(t), 0.0, 0.0}) *
+                     rotation_by({0.0, -strength(t) * pitch.at(t), 0.0}));
+  };
+  const auto noise = [&](double std) {
+    const double x = random.normal(), y = random.normal(), z = random.normal();
+    return Mat<3>(std * x, std * y, std * z);
+  };
+  const Mat<3> rate_bias_radps = noise(0.01);
+  MovingBase out;
+  for (double t = 0.0; t < duration_s; t += step_s) {
+    const Mat<3, 3> A = attitude(t);
+    const Mat<3> along(std::cos(direction_rad), std::sin(direction_rad), 0.0);
+    const Mat<3> shaken(shaking[0].at(t), shaking[1].at(t), shaking[2].at(t));
+    const Mat<3> up = A.col(2) * gravity_mps2;
+    const Mat<3> force =
+        up + A * Mat<3>(strength(t) * (accel.at(t) * along + shaken)) + noise(0.02);
+    const double h = 1e-4;
+    const Mat<3, 3> W = (attitude(t - h) - attitude(t + h)) / (2.0 * h) * A.transpose();  // [ω]×
+    const Mat<3> rate = Mat<3>(W(2, 1), W(0, 2), W(1, 0)) + rate_bias_radps + noise(0.01);
+    out.add(t, force, swing.gyroscope ? &rate : nullptr, up);
   }
   return out;
 }
