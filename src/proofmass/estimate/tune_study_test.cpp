@@ -38,8 +38,7 @@ TEST(TuneStudy, HasTheLimitOfTheRiccatiEquationForEachCase) {
 
 TEST(TuneStudy, LastsUntilTheGainOfEachCaseHasSettled) {
   const TuneStudy study = tune_study(tuning_with(0.1, 0.02, 0.04), 0).value();
-  for (const GainCase& one : study.cases)
-    EXPECT_TRUE(one.study.settling_s[2].has_value());
+  for (const GainCase& one : study.cases) EXPECT_TRUE(one.study.settling_s[2].has_value());
 }
 
 TEST(TuneStudy, TakesStepsFromTheGivenOneOn) {
