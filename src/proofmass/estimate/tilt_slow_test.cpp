@@ -14,15 +14,6 @@
 namespace proofmass::estimate::tilt_slow_test {
 namespace {
 
-struct Coverage {
-  int inside = 0, all = 0;
-  void add(double value, double std, double truth) {
-    inside += std::abs(value - truth) <= 1.959964 * std ? 1 : 0;
-    ++all;
-  }
-  [[nodiscard]] double share() const { return static_cast<double>(inside) / all; }
-};
-
 TEST(TiltCoverage, AtRestIsNinetyFivePercent) {
   Coverage roll, pitch;
   for (std::uint64_t run = 0; run < 4000; ++run) {

@@ -36,6 +36,16 @@ inline TiltRecord still_record(const Mat<3>& force,
   return record;
 }
 
+/// How many 95 % intervals contain the truth.
+struct Coverage {
+  int inside = 0, all = 0;
+  void add(double value, double std, double truth) {
+    inside += std::abs(value - truth) <= 1.959964 * std ? 1 : 0;
+    ++all;
+  }
+  [[nodiscard]] double share() const { return static_cast<double>(inside) / all; }
+};
+
 /// A base that rotates and is shaken or swayed, and its true motion.
 struct MovingBase {
   TiltRecord record;

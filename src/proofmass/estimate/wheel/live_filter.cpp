@@ -348,7 +348,8 @@ void LiveWheelFilter<S>::end_stretch() {
   forget_stretch();
 }
 
-/// Angle and speed of the wheel, from a state without its ripple.
+/// Angle and speed of the wheel, from a state without its ripple. The covariance of the two is left
+/// out: the window does not have it, and the sum is known better than its parts.
 template <int S>
 std::pair<Uncertain, Uncertain> LiveWheelFilter<S>::motion_of(const Gaussian<3>& x,
                                                               const Mat<2>& by_places) const {
