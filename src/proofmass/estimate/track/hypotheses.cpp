@@ -28,9 +28,23 @@ double log_loudness_density(double log_ratio, QuietStretch kind) {
                   (1.0 - same) * 2.0 * std::exp(log_normal_density(log_ratio, louder_std)));
 }
 
-double log_prior(QuietStretch kind, bool at_an_end) {
-  const double no_rest = at_an_end ? 1e-3 : 0.1;
-  return std::log(kind == QuietStretch::rest ? 1.0 - no_rest : no_rest);
+/// Prior of the types of all intervals. The first and the last are rests 999 times in 1000. The
+/// share of the others that are none is a beta variable with mean 0.1, large in a recording of slow
+/// motion, so the counts are beta-binomial.
+double log_prior(const std::vector<QuietStretch>& kinds) {
+  constexpr double none_at_an_end = 1e-3, none = 0.5, rest = 4.5;
+  double log = 0.0, rests = rest, others = none;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    const bool is_rest = kinds[i] == QuietStretch::rest;
+    if (i == 0 || i + 1 == kinds.size()) {
+      log += std::log(is_rest ? 1.0 - none_at_an_end : none_at_an_end);
+      continue;
+    }
+    double& count = is_rest ? rests : others;
+    log += std::log(count / (rests + others));
+    count += 1.0;
+  }
+  return log;
 }
 
 /// Knots of one stretch: that of the arrival, and those on the way through.
@@ -58,17 +72,21 @@ std::vector<StretchKnots> stretches_in(const std::vector<InertialEpoch>& knots) 
   return found;
 }
 
-/// Alternatives to a rest: its level equals that of a neighbour, or it does not.
-std::vector<QuietStretch> other_kinds(const std::vector<StretchKnots>& stretches) {
+/// What an interval may be instead of a rest: in a cruise its level equals that of a neighbour up
+/// to a change of the bias, and on a plateau it differs from one.
+std::vector<std::vector<QuietStretch>> kinds_besides_rest(
+    const std::vector<StretchKnots>& stretches) {
   constexpr double bias_change_mps2 = 0.02;
-  std::vector<QuietStretch> kinds(stretches.size(), QuietStretch::cruise);
+  std::vector<std::vector<QuietStretch>> kinds(stretches.size(), {QuietStretch::cruise});
   for (std::size_t i = 1; i + 1 < stretches.size(); ++i) {
-    const auto apart = [&](std::size_t j) {
-      const double std = std::hypot(stretches[i].level_std_mps2, stretches[j].level_std_mps2);
-      return std::abs(stretches[i].level_mps2 - stretches[j].level_mps2) >
-             bias_change_mps2 + 5.0 * std;
+    const auto beyond_noise_mps2 = [&](std::size_t j) {
+      return std::abs(stretches[i].level_mps2 - stretches[j].level_mps2) -
+             5.0 * std::hypot(stretches[i].level_std_mps2, stretches[j].level_std_mps2);
     };
-    if (apart(i - 1) && apart(i + 1)) kinds[i] = QuietStretch::plateau;
+    const auto [nearest_mps2, farthest_mps2] =
+        std::minmax({beyond_noise_mps2(i - 1), beyond_noise_mps2(i + 1)});
+    if (nearest_mps2 > bias_change_mps2) kinds[i].clear();
+    if (farthest_mps2 > 0.0) kinds[i].push_back(QuietStretch::plateau);
   }
   return kinds;
 }
@@ -81,18 +99,25 @@ void make_cruise(const StretchKnots& stretch,
 }
 
 /// Integrates the measurements instead of using them as bias measurements; returns the log density
-/// about a level of their own, for as many as without_middles() keeps of a rest.
-double make_plateau(const StretchKnots& stretch, std::vector<InertialEpoch>& knots) {
-  constexpr double accel_std_mps2 = 0.5;
+/// about a level of their own, for as many as without_middles() keeps of a rest. Like that of a
+/// rest the level may drift.
+double make_plateau(const StretchKnots& stretch,
+                    double walk_m2ps5,
+                    std::vector<InertialEpoch>& knots) {
+  constexpr double slow_mps2 = 0.05, usual_mps2 = 0.5;
   constexpr std::size_t counted = 6;
-  double log_density = log_normal_density(stretch.level_mps2, accel_std_mps2);
+  double log_density = std::log(0.5 * std::exp(log_normal_density(stretch.level_mps2, slow_mps2)) +
+                                0.5 * std::exp(log_normal_density(stretch.level_mps2, usual_mps2)));
   knots[stretch.arrival].velocity_std_mps = std::numeric_limits<double>::quiet_NaN();
   knots[stretch.arrival].arrives_at_rest = false;
+  double walked_m2ps4 = 0.0;
   for (std::size_t k = stretch.first; k < stretch.end; ++k) {
     InertialEpoch& knot = knots[k];
+    walked_m2ps4 += walk_m2ps5 * knot.dt_s;
     const double level = std::isnan(knot.level_mps2) ? stretch.level_mps2 : knot.level_mps2;
     if (k > stretch.first && k < stretch.first + counted && knot.level_variance > 0.0)
-      log_density += log_normal_density(level - stretch.level_mps2, std::sqrt(knot.level_variance));
+      log_density += log_normal_density(level - stretch.level_mps2,
+                                        std::sqrt(knot.level_variance + walked_m2ps4));
     knot.resting = false;
     knot.velocity_step_mps = level * knot.dt_s;
     knot.position_step_m = 0.5 * level * knot.dt_s * knot.dt_s;
@@ -108,14 +133,16 @@ double log_evidence_of(const std::vector<QuietStretch>& kinds,
                        const std::vector<InertialEpoch>& knots,
                        const AxisRun& run) {
   const bool cruises = std::ranges::find(kinds, QuietStretch::cruise) != kinds.end();
-  const std::vector<double> speeds_mps = cruises ? std::vector{0.3, 3.0, 30.0} : std::vector{0.0};
+  const std::vector<double> speeds_mps =
+      cruises ? std::vector{0.03, 0.3, 3.0, 30.0} : std::vector{0.0};
   std::vector<double> logs;
   for (const double speed_mps : speeds_mps) {
     std::vector<InertialEpoch> labelled = knots;
     double log_density = 0.0;
     for (std::size_t i = 0; i < kinds.size(); ++i) {
       if (kinds[i] == QuietStretch::cruise) make_cruise(stretches[i], speed_mps, labelled);
-      if (kinds[i] == QuietStretch::plateau) log_density += make_plateau(stretches[i], labelled);
+      if (kinds[i] == QuietStretch::plateau)
+        log_density += make_plateau(stretches[i], run.noise.rest_walk_m2ps5, labelled);
     }
     logs.push_back(log_density + log_evidence(without_middles(labelled), run.noise, run.start));
   }
@@ -127,29 +154,61 @@ double log_evidence_of(const std::vector<QuietStretch>& kinds,
 
 constexpr std::size_t most_doubtful = 16;
 
-/// The intervals next to closure velocities.
-std::vector<std::size_t> doubtful(const std::vector<Closure>& closures, std::size_t stretches) {
-  constexpr double left_over_share = 0.25, least_mps = 0.05;
-  std::vector<bool> is_doubtful(stretches, false);
+/// Fraction of the highest speed that remains at the end of each motion, by the interval at which
+/// it arrives; 0 if the noise at rest explains it.
+std::vector<double> speed_left_over(const std::vector<Closure>& closures,
+                                    const std::vector<InertialEpoch>& knots,
+                                    const AxisRun& run,
+                                    std::size_t stretches) {
+  constexpr double far = 5.0;
+  InertialNoise white = run.noise;
+  white.motion_walk_m2ps5 = white.rest_walk_m2ps5 = 0.0;
+  white.motion_jump_m2ps4 = white.motion_lean_m2ps3 = 0.0;
+  ConsistencyCheck unused({.channels = {"position", "velocity", "level"}});
+  const std::vector<Closure> expected = estimate::closures(knots, white, run.start, unused);
+  std::vector<double> left(stretches, 0.0);
   for (std::size_t i = 0; i < closures.size(); ++i) {
     const double speed = std::abs(closures[i].velocity_mps);
-    if (speed < left_over_share * closures[i].fastest_mps || speed < least_mps) continue;
-    const std::size_t at = stretches - closures.size() + i;
-    is_doubtful[at - 1] = is_doubtful[at] = true;
+    if (speed > far * expected[i].expected_std_mps)
+      left[stretches - closures.size() + i] = speed / std::max(speed, closures[i].fastest_mps);
   }
+  return left;
+}
+
+/// The intervals before and after a motion at whose end speed remains.
+std::vector<std::size_t> doubtful(const std::vector<double>& left_over) {
+  constexpr double share = 0.25;
   std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < stretches; ++i)
-    if (is_doubtful[i]) found.push_back(i);
+  for (std::size_t i = 0; i < left_over.size(); ++i)
+    if (left_over[i] > share || (i + 1 < left_over.size() && left_over[i + 1] > share))
+      found.push_back(i);
   return found;
 }
 
+/// Between two rests a motion gains speed and loses it. If its highest speed is what remains at its
+/// end, there was none: the sensor was only tilted, which is less usual.
+double log_prior_of_tilts(const std::vector<QuietStretch>& kinds,
+                          const std::vector<double>& left_over) {
+  constexpr double all = 0.75, only_tilted = 0.2;
+  double log = 0.0;
+  for (std::size_t i = 1; i < kinds.size(); ++i)
+    if (kinds[i - 1] == QuietStretch::rest && kinds[i] == QuietStretch::rest && left_over[i] > all)
+      log += std::log(only_tilted);
+  return log;
+}
+
+/// A combination: for each candidate 0 for a rest, or which of its other kinds, from 1.
+using Choice = std::vector<std::uint8_t>;
+
 /// Candidates that are not rests if the closure velocities accumulate, as they do if the sensor
-/// never stops: those at more than a quarter of the highest such speed, and all plateaus.
-std::uint32_t by_summed_velocities(const std::vector<Closure>& closures,
-                                   const std::vector<StretchKnots>& stretches,
-                                   const std::vector<InertialEpoch>& knots,
-                                   const std::vector<QuietStretch>& other,
-                                   const std::vector<std::size_t>& candidates) {
+/// never stops: those at more than a quarter of the highest such speed, and all that can only be
+/// plateaus.
+Choice by_summed_velocities(const std::vector<Closure>& closures,
+                            const std::vector<StretchKnots>& stretches,
+                            const std::vector<InertialEpoch>& knots,
+                            const std::vector<std::vector<QuietStretch>>& other,
+                            const std::vector<std::size_t>& candidates) {
+  const auto accelerates = [&](std::size_t i) { return other[i].front() == QuietStretch::plateau; };
   std::vector<double> speed_mps(stretches.size(), 0.0);
   double v = 0.0, highest = 0.0;
   for (std::size_t i = 1; i < stretches.size(); ++i) {
@@ -157,15 +216,14 @@ std::uint32_t by_summed_velocities(const std::vector<Closure>& closures,
     if (closure >= stretches.size()) v += closures[closure - stretches.size()].velocity_mps;
     speed_mps[i] = std::abs(v);
     highest = std::max(highest, speed_mps[i]);
-    if (other[i] != QuietStretch::plateau) continue;
+    if (!accelerates(i)) continue;
     for (std::size_t k = stretches[i].first; k < stretches[i].end; ++k)
       v += stretches[i].level_mps2 * knots[k].dt_s;
   }
-  std::uint32_t mask = 0;
-  for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (other[candidates[i]] == QuietStretch::plateau || speed_mps[candidates[i]] > 0.25 * highest)
-      mask |= std::uint32_t{1} << i;
-  return mask;
+  Choice choice;
+  for (const std::size_t i : candidates)
+    choice.push_back(accelerates(i) || speed_mps[i] > 0.25 * highest ? 1 : 0);
+  return choice;
 }
 
 /// Climbs from each start to a most likely combination, by one or two intervals at a time, and
@@ -174,39 +232,55 @@ std::uint32_t by_summed_velocities(const std::vector<Closure>& closures,
 template <class LogPosterior>
 class Climb {
  public:
-  using Mask = std::uint32_t;
-
-  Climb(std::size_t candidates, std::array<Mask, 2> starts, LogPosterior log_posterior)
-      : count_(candidates), log_posterior_(std::move(log_posterior)) {
-    for (const Mask start : starts) climb_from(start);
+  /// `kinds`: how many there are for each candidate, the rest included.
+  Climb(std::vector<std::uint8_t> kinds,
+        const std::array<Choice, 3>& starts,
+        LogPosterior log_posterior)
+      : kinds_(std::move(kinds)), log_posterior_(std::move(log_posterior)) {
+    for (const Choice& start : starts) climb_from(start);
   }
-  [[nodiscard]] const std::map<Mask, double>& seen() const { return seen_; }
+  [[nodiscard]] const std::map<Choice, double>& seen() const { return seen_; }
 
  private:
-  void climb_from(Mask best) {
+  void climb_from(Choice best) {
     see(best);
     for (bool climbs = true; climbs;) {
-      const Mask from = best;
-      for (std::size_t i = 0; i < count_; ++i) take_better(from ^ bit(i), best);
-      for (std::size_t i = 0; best == from && i < count_; ++i)
-        for (std::size_t j = 0; j < i; ++j) take_better(from ^ bit(i) ^ bit(j), best);
-      if (best == from) take_better(from ^ (bit(count_) - 1), best);
+      const Choice from = best;
+      for (std::size_t i = 0; i < kinds_.size(); ++i)
+        for (const Choice& one : changed_at(i, from)) take_better(one, best);
+      for (std::size_t i = 0; best == from && i < kinds_.size(); ++i)
+        for (const Choice& one : changed_at(i, from))
+          for (std::size_t j = 0; j < i; ++j)
+            for (const Choice& two : changed_at(j, one)) take_better(two, best);
+      if (best == from) take_better(opposite(from), best);
       climbs = best != from;
     }
   }
-  static Mask bit(std::size_t i) { return Mask{1} << i; }
-  double see(Mask mask) {
-    const auto [at, is_new] = seen_.try_emplace(mask, 0.0);
-    if (is_new) at->second = log_posterior_(mask);
+  [[nodiscard]] std::vector<Choice> changed_at(std::size_t i, const Choice& from) const {
+    std::vector<Choice> changed;
+    for (std::uint8_t kind = 0; kind < kinds_[i]; ++kind) {
+      if (kind == from[i]) continue;
+      changed.push_back(from);
+      changed.back()[i] = kind;
+    }
+    return changed;
+  }
+  [[nodiscard]] static Choice opposite(Choice choice) {
+    for (std::uint8_t& kind : choice) kind = kind == 0 ? 1 : 0;
+    return choice;
+  }
+  double see(const Choice& choice) {
+    const auto [at, is_new] = seen_.try_emplace(choice, 0.0);
+    if (is_new) at->second = log_posterior_(choice);
     return at->second;
   }
-  void take_better(Mask mask, Mask& best) {
-    if (see(mask) > seen_.at(best)) best = mask;
+  void take_better(const Choice& choice, Choice& best) {
+    if (see(choice) > seen_.at(best)) best = choice;
   }
 
-  std::size_t count_;
+  std::vector<std::uint8_t> kinds_;
   LogPosterior log_posterior_;
-  std::map<Mask, double> seen_{};
+  std::map<Choice, double> seen_{};
 };
 
 double duration_s(const std::vector<InertialEpoch>& knots, std::size_t first, std::size_t end) {
@@ -291,8 +365,12 @@ void drop_plateaus(TrackSignal& signal) {
   };
   const auto most = std::ranges::max_element(levels, {}, agreeing_s);
   std::vector<signal::Rest> kept;
-  for (std::size_t i = 0; i < rests.size(); ++i)
-    if (agree(*most, levels[i])) kept.push_back(rests[i]);
+  for (std::size_t i = 0; i < rests.size(); ++i) {
+    if (agree(*most, levels[i]))
+      kept.push_back(rests[i]);
+    else
+      signal.stops.quiet_s -= levels[i].duration_s;
+  }
   signal.stops.plateaus += rests.size() - kept.size();
   rests = std::move(kept);
 }
@@ -302,40 +380,49 @@ std::vector<StopHypothesis> stop_hypotheses(const TrackSignal& signal,
                                             const std::vector<Closure>& closures) {
   const std::size_t count = signal.stops.rests.size();
   const std::vector<QuietStretch> all_rests(count, QuietStretch::rest);
-  const std::vector<std::size_t> candidates =
-      closures.size() < count ? doubtful(closures, count) : std::vector<std::size_t>{};
   const std::vector<InertialEpoch> knots = join_epochs(run.made.epochs, run.made.knots);
+  if (closures.size() >= count) return {{all_rests, 1.0}};
+  const std::vector<double> left_over = speed_left_over(closures, knots, run, count);
+  const std::vector<std::size_t> candidates = doubtful(left_over);
   const std::vector<StretchKnots> stretches = stretches_in(knots);
   if (candidates.empty() || stretches.size() != count) return {{all_rests, 1.0}};
   if (candidates.size() > most_doubtful) return {};
-  const std::vector<QuietStretch> other = other_kinds(stretches);
+  const std::vector<std::vector<QuietStretch>> other = kinds_besides_rest(stretches);
   const std::vector<double> noise = rest_noises(signal);
   const double quietest = std::ranges::min(noise);
-  const auto kinds_of = [&](std::uint32_t mask) {
+  std::vector<std::uint8_t> how_many;
+  for (const std::size_t i : candidates)
+    how_many.push_back(static_cast<std::uint8_t>(1 + other[i].size()));
+  const auto kinds_of = [&](const Choice& choice) {
     std::vector<QuietStretch> kinds = all_rests;
     for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (mask >> i & 1) kinds[candidates[i]] = other[candidates[i]];
+      if (choice[i] > 0) kinds[candidates[i]] = other[candidates[i]][choice[i] - 1U];
     return kinds;
   };
-  const std::array<std::uint32_t, 2> starts{
-      0, by_summed_velocities(closures, stretches, knots, other, candidates)};
-  const Climb climb(candidates.size(), starts, [&](std::uint32_t mask) {
-    const std::vector<QuietStretch> kinds = kinds_of(mask);
+  Choice accelerating;
+  for (const std::size_t i : candidates)
+    accelerating.push_back(
+        other[i].back() == QuietStretch::plateau ? static_cast<std::uint8_t>(other[i].size()) : 0);
+  const std::array<Choice, 3> starts{
+      Choice(candidates.size(), 0),
+      by_summed_velocities(closures, stretches, knots, other, candidates), accelerating};
+  const Climb climb(how_many, starts, [&](const Choice& choice) {
+    const std::vector<QuietStretch> kinds = kinds_of(choice);
     if (std::ranges::find(kinds, QuietStretch::rest) == kinds.end())
       return -std::numeric_limits<double>::infinity();
-    double log = log_evidence_of(kinds, stretches, knots, run);
+    double log = log_evidence_of(kinds, stretches, knots, run) + log_prior(kinds) +
+                 log_prior_of_tilts(kinds, left_over);
     for (const std::size_t i : candidates)
-      log += log_prior(kinds[i], i == 0 || i + 1 == count) +
-             log_loudness_density(quietest > 0.0 ? std::log(noise[i] / quietest) : 0.0, kinds[i]);
+      log += log_loudness_density(quietest > 0.0 ? std::log(noise[i] / quietest) : 0.0, kinds[i]);
     return log;
   });
   const auto log_of = [](const auto& one) { return one.second; };
   const double best = std::ranges::max_element(climb.seen(), {}, log_of)->second;
   double sum = 0.0;
-  for (const auto& [mask, log] : climb.seen()) sum += std::exp(log - best);
+  for (const auto& [choice, log] : climb.seen()) sum += std::exp(log - best);
   std::vector<StopHypothesis> hypotheses;
-  for (const auto& [mask, log] : climb.seen())
-    hypotheses.push_back({kinds_of(mask), std::exp(log - best) / sum});
+  for (const auto& [choice, log] : climb.seen())
+    hypotheses.push_back({kinds_of(choice), std::exp(log - best) / sum});
   allow_for_tilts(signal, stretches, knots, hypotheses);
   std::ranges::sort(hypotheses, std::greater{}, &StopHypothesis::probability);
   std::erase_if(hypotheses, [](const StopHypothesis& one) { return one.probability < 1e-3; });

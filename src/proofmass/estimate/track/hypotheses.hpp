@@ -22,14 +22,17 @@ struct StopHypothesis {
 void drop_plateaus(TrackSignal& signal);
 
 /// Hypotheses for the stops, by falling probability; none below 1e-3. One hypothesis, all rests,
-/// unless more than a quarter of the speed remains at some stop.
+/// unless more than a quarter of the speed remains at some stop, and more than five times what the
+/// noise at rest explains.
 ///
 /// - Likelihood: of all closure velocities and levels, with the errors of motion integrated out as
 ///   in motion_error(). A cruise between two rests makes one closure velocity and the next cancel;
 ///   a tilt or a jump of the bias does not.
-/// - Prior: an interval between others is a rest nine times in ten, the first and the last 999
-///   times in 1000; a cruise has a speed of about 0.3, 3 or 30 m/s; it is usually, and a rest
-///   seldom, louder than the quietest interval.
+/// - Prior: the first and the last interval are rests 999 times in 1000; the share of the others
+///   that are none has a beta distribution with mean 0.1. A cruise has a speed of about 0.03, 0.3, 3
+///   or 30 m/s, a plateau an acceleration of about 0.05 or 0.5 m/s²; either is usually, and a rest
+///   seldom, louder than the quietest interval. A motion between two rests whose highest speed is
+///   what remains at its end is a tilt without motion, one in five.
 /// - A plateau within 2° of the interval before it may be a rest on a place that is not level: the
 ///   hypothesis with a rest there has at least a tenth of its probability.
 /// - Constant speed of the frame is not distinguishable from rest: only these priors separate a

@@ -74,10 +74,16 @@ double outside(double x) {
 std::vector<InertialEpoch> without_middles(View<InertialEpoch> knots) {
   constexpr std::size_t kept = 3;
   std::vector<InertialEpoch> out(knots.begin(), knots.end());
+  // A motion may be a single knot.
+  const auto ends_soon_after = [&](std::size_t k) {
+    bool ends = k + kept >= knots.size();
+    for (std::size_t next = k + 1; next <= k + kept && !ends; ++next) ends = !knots[next].resting;
+    return ends;
+  };
   std::size_t run = 0;
   for (std::size_t k = 0; k < out.size(); ++k) {
     run = out[k].resting ? run + 1 : 0;
-    const bool ends_soon = k + kept >= out.size() || !knots[k + kept].resting;
+    const bool ends_soon = ends_soon_after(k);
     if (run > kept && !ends_soon && std::isnan(out[k].position_m)) out[k].level_mps2 = std::nan("");
   }
   std::vector<std::size_t> read;

@@ -90,9 +90,7 @@ bool leaves_jerk(TrackSignal& signal, const TrackOptions& options, Result<AlongA
 void keep_ends_of_rest(TrackSignal& signal) {
   constexpr double nearly_all = 0.95, longest_end_s = 2.0;
   const double all_s = signal.time_s.back() - signal.time_s.front();
-  double resting_s = 0.0;
-  for (const signal::Rest& rest : signal.stops.rests) resting_s += length_s(signal, rest);
-  if (resting_s < nearly_all * all_s) return;
+  if (signal.stops.quiet_s < nearly_all * all_s) return;
   const double end_s = std::min(longest_end_s, 0.25 * all_s);
   const std::size_t n = signal.time_s.size();
   const std::size_t first = sample_at(signal.time_s, signal.time_s.front() + end_s),

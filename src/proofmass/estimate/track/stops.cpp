@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -60,15 +61,19 @@ std::vector<signal::Rest> united(std::vector<signal::Rest> rests) {
   return out;
 }
 
+// Slow motion is seen in longer means: units of one, two and four blocks.
+constexpr std::array<std::size_t, 3> units{1, 2, 4};
+
 // Means of the axes over blocks of a quarter of a second of each rest, NaN for a block without
-// measurements, and the scatter of such means at rest.
+// measurements, and the scatter of the means of a unit at rest.
 struct RestMeans {
   std::size_t length = 0;  // of a block, in samples
   std::vector<std::vector<std::array<double, 3>>> of_rest;
-  std::array<double, 3> std{};
+  std::array<std::array<double, 3>, units.size()> unit_std{};
+  std::array<double, 3> std{};  // of a block
 };
 
-constexpr double far_level = 5.0;         // standard deviations of a block's mean
+constexpr double far_level = 5.0;         // standard deviations of a unit's mean
 constexpr std::size_t spread_blocks = 8;  // over which a scatter is taken
 
 double mean_of(View<double> part) {
@@ -76,15 +81,47 @@ double mean_of(View<double> part) {
   return found.count > 0 ? found.mean : std::numeric_limits<double>::quiet_NaN();
 }
 
+// Mean of blocks [first, end), one axis.
+Moments over(const std::vector<std::array<double, 3>>& means,
+             std::size_t first,
+             std::size_t end,
+             std::size_t axis) {
+  Moments found;
+  for (std::size_t k = first; k < end; ++k) found.add(means[k][axis]);
+  return found;
+}
+
 // Standard deviation of the means of each run of spread_blocks blocks, one axis.
 void add_spreads(const std::vector<std::array<double, 3>>& means,
                  std::size_t axis,
                  std::vector<double>& spreads) {
   for (std::size_t i = 0; i + spread_blocks <= means.size(); ++i) {
-    Moments spread;
-    for (std::size_t k = i; k < i + spread_blocks; ++k) spread.add(means[k][axis]);
+    const Moments spread = over(means, i, i + spread_blocks, axis);
     if (spread.count == spread_blocks) spreads.push_back(spread.std());
   }
+}
+
+// Scatter of the means of blocks at rest, one axis. The fiftieth with the smallest scatter is at
+// rest, if anything is; selection makes its scatter smaller than that of all rests.
+double steadiest_std(const RestMeans& found, std::size_t axis) {
+  constexpr double share = 0.02, dof = spread_blocks - 1.0;
+  std::vector<double> spreads;
+  for (const auto& means : found.of_rest) add_spreads(means, axis, spreads);
+  return quantile(spreads, share).value_or(0.0) / std::sqrt(chi_square_quantile(share, dof) / dof);
+}
+
+// Scatter of the means of longer units, one axis: from the smallest tenth of the differences of
+// units that follow each other, since most of the others may be motion.
+double usual_std(const RestMeans& found, std::size_t axis, std::size_t unit) {
+  constexpr double share = 0.1, normal_quantile = 0.1257;  // of the magnitude
+  std::vector<double> apart;
+  for (const auto& means : found.of_rest)
+    for (std::size_t i = 0; i + 2 * unit <= means.size(); ++i) {
+      const Moments one = over(means, i, i + unit, axis);
+      const Moments next = over(means, i + unit, i + 2 * unit, axis);
+      if (one.count == unit && next.count == unit) apart.push_back(std::abs(next.mean - one.mean));
+    }
+  return quantile(apart, share).value_or(0.0) / (normal_quantile * std::numbers::sqrt2);
 }
 
 // Standard deviation of a block's mean from white noise alone: from differences, which a slow
@@ -110,39 +147,55 @@ RestMeans rest_means(View<View<double>> axes,
         mean[a] = mean_of(axes[a].subspan(k, out.length));
     }
   }
-  // The fiftieth with the smallest scatter is at rest, if anything is; selection makes its scatter
-  // smaller than that of all rests.
-  constexpr double share = 0.02, dof = spread_blocks - 1.0;
-  const double least = std::sqrt(chi_square_quantile(share, dof) / dof);
   for (std::size_t a = 0; a < axes.size(); ++a) {
-    std::vector<double> spreads;
-    for (const auto& means : out.of_rest) add_spreads(means, a, spreads);
-    out.std[a] = std::max(quantile(spreads, share).value_or(0.0) / least,
-                          white_std(axes[a], rests, out.length));
+    const double white = white_std(axes[a], rests, out.length);
+    out.unit_std[0][a] = std::max(steadiest_std(out, a), white);
+    for (std::size_t u = 1; u < units.size(); ++u)
+      out.unit_std[u][a] =
+          std::max(usual_std(out, a, units[u]), white / std::sqrt(static_cast<double>(units[u])));
   }
+  out.std = out.unit_std[0];
   return out;
 }
 
-// Runs of blocks whose means stay near the mean of those just before, as [first, end).
+// Whether the unit that ends before block `end` departs from the level of the `reach` blocks before
+// it, of the run that begins at block `first`.
+bool departs(const std::vector<std::array<double, 3>>& means,
+             std::size_t first,
+             std::size_t end,
+             std::size_t unit,
+             std::size_t reach,
+             const std::array<double, 3>& unit_std) {
+  if (end < first + unit + 1) return false;
+  const std::size_t begin = end - unit;
+  const std::size_t from = std::max(first, begin - std::min(begin, reach));
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Moments before = over(means, from, begin, a), now = over(means, begin, end, a);
+    if (before.count == 0 || now.count == 0) continue;
+    const auto units_of = [&](const Moments& mean) {
+      return static_cast<double>(mean.count) / static_cast<double>(unit);
+    };
+    const double std = unit_std[a] * std::sqrt(1.0 / units_of(now) + 1.0 / units_of(before));
+    if (std::abs(now.mean - before.mean) > far_level * std) return true;
+  }
+  return false;
+}
+
+// Runs of blocks whose level stays near that just before, as [first, end).
 std::vector<std::array<std::size_t, 2>> steady_runs(const std::vector<std::array<double, 3>>& means,
-                                                    const std::array<double, 3>& std) {
-  constexpr std::size_t reach = 8;  // blocks; a level may drift from two seconds to the next
+                                                    std::size_t reach,
+                                                    const RestMeans& found) {
   std::vector<std::array<std::size_t, 2>> runs;
   std::size_t first = 0;
-  for (std::size_t k = 1; k <= means.size(); ++k) {
-    bool departs = k == means.size();
-    const std::size_t from = std::max(first, k - std::min(k, reach));
-    for (std::size_t a = 0; a < 3 && !departs; ++a) {
-      Moments before;
-      for (std::size_t i = from; i < k; ++i) before.add(means[i][a]);
-      const auto count = static_cast<double>(before.count);
-      departs = before.count > 0 && std::abs(means[k][a] - before.mean) >
-                                        far_level * std[a] * std::sqrt(1.0 + 1.0 / count);
+  for (std::size_t end = 1; end <= means.size(); ++end) {
+    for (std::size_t u = 0; u < units.size(); ++u) {
+      if (!departs(means, first, end, units[u], reach, found.unit_std[u])) continue;
+      runs.push_back({first, end - units[u]});
+      first = end - units[u];
+      break;
     }
-    if (!departs) continue;
-    runs.push_back({first, k});
-    first = k;
   }
+  if (!means.empty()) runs.push_back({first, means.size()});
   return runs;
 }
 
@@ -157,7 +210,11 @@ struct SteadyPart {
 std::vector<SteadyPart> parts_of(const RestMeans& found, std::size_t rest) {
   std::vector<SteadyPart> parts;
   const auto& means = found.of_rest[rest];
-  const auto runs = steady_runs(means, found.std);
+  // A level may drift from two seconds to the next. Where it departs the sensor moves, and what may
+  // be drift beside that is slow motion: then it is compared with the minute before.
+  constexpr std::size_t minute_blocks = 240;
+  auto runs = steady_runs(means, spread_blocks, found);
+  if (runs.size() > 1) runs = steady_runs(means, minute_blocks, found);
   for (std::size_t r = 0; r < runs.size(); ++r) {
     // A block next to a departure may contain the beginning or end of the motion.
     SteadyPart part{rest, runs[r][0] + (r == 0 ? 0 : 1),
@@ -376,6 +433,8 @@ Stops find_stops(View<View<double>> axes,
   const double shortest_s = options.shortest_rest_s.value_or(0.5);
   Stops stops{steady_parts(axes, search.rests, rate_hz, shortest_s), false,
               std::move(search.why_none)};
+  for (const signal::Rest& rest : search.rests)
+    stops.quiet_s += time_s[rest.last] - time_s[rest.first];
   if (stops.rests.empty()) {
     stops.rests = quiet_stretches(axes, rate_hz, shortest_s);
     stops.by_quietness = !stops.rests.empty();

@@ -14,6 +14,8 @@ struct Stops {
   std::string why_none{};
   std::size_t cruises = 0, plateaus = 0;  ///< removed: constant speed, constant acceleration
   bool too_many_in_doubt = false;         ///< whether they are rests is ambiguous for too many
+  /// Duration of the quiet intervals of which the rests are parts, without plateaus removed.
+  double quiet_s = 0.0;
   bool only_ends = false;  ///< all of the recording is as quiet as rest, and may hide a motion
 };
 
