@@ -157,27 +157,45 @@ bool rests_are_in_doubt(const TrackOptions& options) {
   return options.still.empty() && !options.only_end_rests;
 }
 
-Result<TrackSolution> track_without_gyro(const TrackSensor& sensor,
-                                         TrackSignal signal,
-                                         const TrackOptions& options) {
+struct Settled {
+  AlongAxis along;
+  std::size_t belied = 0;  // short quiet intervals that are no rests
+  std::vector<TrackAlternative> alternatives;
+};
+
+// Decides which quiet intervals are rests, removes the others from the signal.
+Result<Settled> settle(TrackSignal& signal, const TrackOptions& options) {
   auto solved = solve(signal, options);
   if (!solved) return solved.error();
-  const std::size_t belied =
-      options.only_end_rests ? 0 : drop_belied_rests(signal, solved->accel_mps2, options);
-  if (belied > 0) solved = solve(signal, options);
-  std::vector<TrackAlternative> alternatives;
-  if (rests_are_in_doubt(options)) alternatives = settle_stops(signal, options, solved);
-  AlongAxis found = std::move(solved).value();
-  TrackSolution solution = described(signal, options);
-  solution.false_rests = belied;
+  Settled settled;
+  if (!options.only_end_rests)
+    settled.belied = drop_belied_rests(signal, solved->accel_mps2, options);
+  if (settled.belied > 0) solved = solve(signal, options);
+  if (rests_are_in_doubt(options)) settled.alternatives = settle_stops(signal, options, solved);
+  settled.along = std::move(solved).value();
+  return settled;
+}
+
+void add_alternatives(std::vector<TrackAlternative> alternatives, TrackSolution& solution) {
   solution.alternatives = std::move(alternatives);
-  solution.axis = found.axis.direction;
-  solution.travel_share = found.axis.share;
-  solution.scale_std = scale_std(signal, options, solution);
   for (TrackAlternative& one : solution.alternatives) {
     Uncertain& displacement = one.displacement_m;
     displacement.std = std::hypot(displacement.std, solution.scale_std * displacement.value);
   }
+}
+
+Result<TrackSolution> track_without_gyro(const TrackSensor& sensor,
+                                         TrackSignal signal,
+                                         const TrackOptions& options) {
+  auto settled = settle(signal, options);
+  if (!settled) return settled.error();
+  AlongAxis found = std::move(settled->along);
+  TrackSolution solution = described(signal, options);
+  solution.false_rests = settled->belied;
+  solution.axis = found.axis.direction;
+  solution.travel_share = found.axis.share;
+  solution.scale_std = scale_std(signal, options, solution);
+  add_alternatives(std::move(settled->alternatives), solution);
   solution.motion_error = {std::sqrt(found.error.walk_m2ps5), std::sqrt(found.error.jump_m2ps4),
                            std::sqrt(found.error.lean_m2ps3)};
   solution.factor_95 = found.error.factor_95;
@@ -218,13 +236,36 @@ std::vector<double> covariance_by_velocity(const TrackSeries& series,
   return entries;
 }
 
+// As settle(), with the attitude that the gyroscope measures between the first and the last rest:
+// gravity is removed, and a tilt is none of what a quiet interval may be.
+Result<Settled> settle_with_gyro(const TrackSensor& sensor,
+                                 TrackSignal& signal,
+                                 const TrackOptions& options) {
+  auto made = world_signal(sensor, signal, options);
+  if (!made) return made.error();
+  TrackSignal world = std::move(made).value();
+  TrackOptions level = options;
+  level.take_as_acceleration = true;
+  auto settled = settle(world, level);
+  signal.stops = world.stops;
+  return settled;
+}
+
 Result<TrackSolution> track_with_gyro(const TrackSensor& sensor,
-                                      const TrackSignal& signal,
+                                      TrackSignal signal,
                                       const TrackOptions& options) {
+  Settled settled;
+  if (rests_are_in_doubt(options) && signal.stops.rests.size() > 2) {
+    auto found = settle_with_gyro(sensor, signal, options);
+    if (!found) return found.error();
+    settled = std::move(found).value();
+  }
   TrackSolution solution = described(signal, options);
+  solution.false_rests = settled.belied;
   const TrackReadings readings = readings_of(signal, options);
   if (const auto done = track_aided(sensor, signal, readings, options, solution); !done)
     return done.error();
+  add_alternatives(std::move(settled.alternatives), solution);
   const AxisRun quiet = prepare_axis(signal, solution.series.accel_mps2, readings, {});
   solution.budget = budget_of(signal, quiet);
   judge(
@@ -255,7 +296,7 @@ Result<TrackSolution> estimate_track(const TrackSensor& sensor, const TrackOptio
   }
   const bool inertial = options.model == TrackModel::inertial;
   if (inertial && has_gyro(sensor) && signal.gravity == GravityContent::present)
-    return track_with_gyro(sensor, signal, options);
+    return track_with_gyro(sensor, std::move(signal), options);
   return track_without_gyro(sensor, std::move(signal), options);
 }
 

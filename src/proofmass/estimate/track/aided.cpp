@@ -68,6 +68,26 @@ void fill(const Attitude& attitude,
 
 }  // namespace
 
+Result<TrackSignal> world_signal(const TrackSensor& sensor,
+                                 const TrackSignal& signal,
+                                 const TrackOptions& options) {
+  const InertialSeries series{sensor.time_s, sensor.rate_radps, sensor.accel_mps2};
+  AttitudeOptions how;
+  how.gravity_mps2 = options.gravity_mps2;
+  how.progress = options.progress;
+  const auto found =
+      estimate_attitude(series, {signal.stops.rests.front(), signal.stops.rests.back()}, how);
+  if (!found) return found.error();
+  TrackSignal world = signal;
+  const auto accel = gravity_free_acceleration(series, *found);
+  world.accel_mps2.assign(accel.begin(), accel.end());
+  world.axes = {0, 1, 2};
+  world.reference_mps2.assign(3, 0.0);
+  world.gravity = GravityContent::removed;
+  world.resting_norm_mps2.reset();
+  return world;
+}
+
 Result<bool> track_aided(const TrackSensor& sensor,
                          const TrackSignal& signal,
                          const TrackReadings& readings,

@@ -20,6 +20,7 @@ struct Kind {
   std::string name;
   std::function<Ride(Draw&)> make;
   double least_given = 0.9, least_held = 0.93;
+  int most_wrong = 0;  ///< off by more than five standard deviations
 
   friend std::ostream& operator<<(std::ostream& out, const Kind& kind) { return out << kind.name; }
 };
@@ -33,7 +34,7 @@ TEST_P(TrackRides, HoldTheTruthOrGiveNoFigure) {
               100.0 * held.share(), held.largest, held.rms_m());
   EXPECT_GE(held.given, GetParam().least_given * recordings);
   EXPECT_GE(held.share(), GetParam().least_held);
-  EXPECT_EQ(held.wrong, 0);
+  EXPECT_LE(held.wrong, GetParam().most_wrong);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -49,6 +50,11 @@ INSTANTIATE_TEST_SUITE_P(
         Kind{"shaken along one axis", rides::shaken, 0.75},
         Kind{"slide within the noise", rides::slow_slide, 0.5},
         Kind{"slow strokes, short rests", rides::slow_strokes},
+        // A move within the noise of a second's mean stays hidden in a rest.
+        Kind{"slow moves", rides::slow_moves, 0.7, 0.9, 6},
+        Kind{"lift with a gyroscope, vibration as the noise",
+             rides::with_gyro([](Draw& draw) { return rides::lift(draw, 1, 1.0); })},
+        Kind{"slow moves with a gyroscope", rides::with_gyro(rides::slow_moves), 0.7, 0.9, 10},
         Kind{"train", [](Draw& draw) { return rides::train(draw, 0.0); }},
         Kind{"train, vibration 3 times", [](Draw& draw) { return rides::train(draw, 3.0); }},
         Kind{"floor of 0.3 degrees",

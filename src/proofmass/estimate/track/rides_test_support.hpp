@@ -44,6 +44,7 @@ struct Ride {
   double noise_mps2 = 0.03;
   double moving_noise_mps2 = 0.0;  ///< additional noise while the speed is not 0
   double floor_tilt_rad = 0.0;     ///< root mean square, about an axis across the motion
+  bool has_gyro = false;           ///< with a bias; on a level floor
 };
 
 struct RideRecord {
@@ -125,6 +126,12 @@ inline RideRecord record(const Ride& ride, Draw& draw) {
     for (std::size_t a = 0; a < 3; ++a)
       out.sensor.accel_mps2[a].push_back(level[a] + force[a] +
                                          std::hypot(ride.noise_mps2, shaking) * draw.normal());
+  }
+  if (!ride.has_gyro) return out;
+  for (auto& rates : out.sensor.rate_radps) {
+    const double bias_radps = 0.01 * draw.normal();
+    for (std::size_t k = 0; k < out.sensor.time_s.size(); ++k)
+      rates.push_back(bias_radps + 0.002 * draw.normal());
   }
   return out;
 }
@@ -242,6 +249,33 @@ inline Ride slow_strokes(Draw& draw) {
     ride.legs.push_back({i < 7 ? 1.2 : 3.0, 0.0});
   }
   return ride;
+}
+
+/// One to four slow moves in one direction, 0.1 to 0.5 m in 4 to 10 s, with pauses between: in most
+/// of each the acceleration is nearly constant, and little above the noise.
+inline Ride slow_moves(Draw& draw) {
+  Ride ride;
+  ride.axis = 0;
+  ride.noise_mps2 = 0.01;
+  ride.legs.push_back({draw.between(1.5, 4.0), 0.0});
+  const int count = static_cast<int>(draw.between(1.0, 5.0));
+  for (int i = 0; i < count; ++i) {
+    const double half_s = 0.5 * draw.between(4.0, 10.0);
+    const double eased = draw.between(0.3, 1.0);
+    ride.legs.push_back({half_s, draw.between(0.1, 0.5) / half_s, eased});
+    ride.legs.push_back({half_s, 0.0, eased});
+    ride.legs.push_back({draw.between(1.5, 4.0), 0.0});
+  }
+  return ride;
+}
+
+template <class Make>
+auto with_gyro(Make make) {
+  return [make](Draw& draw) {
+    Ride ride = make(draw);
+    ride.has_gyro = true;
+    return ride;
+  };
 }
 
 /// Two to six strokes of 0.3 to 1.5 m over a floor that is not level.
