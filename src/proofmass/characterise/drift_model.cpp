@@ -153,7 +153,9 @@ Result<DriftForecast> forecast(const DriftFit& fit, double t_s) {
                  fmt::format("the forecast for {:g} s is before the end of the recording at {:g} "
                              "s after power-on: give a later time",
                              t_s, fit.end.t_s)};
-  if (fit.identified) return forecast_of({fit.curve, fit.noise, fit.end, 1.0}, {t_s, fit.block_s});
+  if (fit.identified)
+    return forecast_of(fit.hidden_walk.value_or(DriftPossibility{fit.curve, fit.noise, fit.end}),
+                       {t_s, fit.block_s});
   if (fit.possibilities.empty()) return Error{Errc::not_observable, fit.reason};
   std::vector<Interval95> bias, change;
   for (const DriftPossibility& one : fit.possibilities) {

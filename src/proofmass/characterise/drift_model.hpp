@@ -139,8 +139,11 @@ struct DriftFit {
   DriftReason why = DriftReason::no_warm_up;
   std::string reason;  ///< a sentence for people, without units: values are in the fields
 
-  /// If the shape is not determined, all shapes that fit as well, the most likely first.
+  /// If the shape is not determined, all shapes that fit as well, the most likely first. With the
+  /// random walk that white noise may hide.
   std::vector<DriftPossibility> possibilities;
+  /// If identified in white noise, the curve with that random walk: for forecasts.
+  std::optional<DriftPossibility> hidden_walk;
 
   Interval95 a2;                              ///< bias at power-on, over all possibilities
   std::optional<Interval95> a1;               ///< if identified

@@ -165,7 +165,10 @@ class DriftVerdict {
     const double dof = profile_.amplitude_dof();
     fit.a2 = interval(fit.curve.a2, std::sqrt(fit.curve.covariance(0, 0)), dof);
     if (!none && !fit.identified) allow(as_good, dof);
-    if (fit.identified) intervals(T);
+    if (fit.identified) {
+      fit.hidden_walk = possibility(exponential_, 1.0);
+      intervals(T);
+    }
     if (has_line(fit.curve.shape)) {
       const Index place = fit.curve.shape == DriftShape::line ? 1 : 3;
       fit.slope_per_s =
@@ -194,14 +197,19 @@ class DriftVerdict {
     std::vector<Interval95> levels;
     double sum = 0.0;
     for (const DriftFitAtShape* trial : as_good) {
-      const PlacedCurve placed = place(evidence_, *trial);
       const double weight = std::exp(0.5 * (as_good.front()->akaike() - trial->akaike()));
       sum += weight;
-      fit.possibilities.push_back({placed.curve, noise_of(*trial), placed.end, weight});
-      levels.push_back(interval(placed.curve.a2, std::sqrt(placed.curve.covariance(0, 0)), dof));
+      const DriftCurve& curve = fit.possibilities.emplace_back(possibility(*trial, weight)).curve;
+      levels.push_back(interval(curve.a2, std::sqrt(curve.covariance(0, 0)), dof));
     }
     for (DriftPossibility& one : fit.possibilities) one.weight /= sum;
     fit.a2 = covering(levels, fit.possibilities);
+  }
+
+  [[nodiscard]] DriftPossibility possibility(const DriftFitAtShape& trial, double weight) const {
+    const DriftFitAtShape walked = trials_.with_hidden_walk(trial);
+    const PlacedCurve placed = place(evidence_, walked);
+    return {placed.curve, noise_of(walked), placed.end, weight};
   }
 
   // Clearly better by both criteria.

@@ -100,6 +100,28 @@ TEST(DriftFit, SeesNoWarmUpInWhiteNoise) {
   }
 }
 
+// An exponential absorbs most of a weak random walk, whose most likely strength is then zero:
+// all eight forecasts were outside of their intervals, by up to nine standard deviations.
+TEST(DriftFit, AForecastAllowsForARandomWalkThatTheCurveHides) {
+  constexpr double walk = 0.02;
+  int hidden = 0, held = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    const Series slow = test::sum_of({test::warm_up(20.0, 150.0, 0.25, n + n / 4),
+                                      test::random_walk(walk, 0.25, n + n / 4, 1000 + seed)});
+    const DriftFit fit = fitted(with_white({slow.begin(), slow.begin() + n}, seed));
+    if (!fit.identified || fit.noise.random_walk > 0.0) continue;
+    ASSERT_TRUE(fit.hidden_walk);
+    EXPECT_GT(fit.hidden_walk->noise.random_walk, 0.0);
+    ++hidden;
+    const double later_s = static_cast<double>(slow.size() - 1) * 4.0;
+    const Interval95 bias = forecast(fit, later_s).value().bias;
+    held += holds(bias, slow.back()) ? 1 : 0;
+    EXPECT_NEAR(bias.value, slow.back(), 5.0 * bias.std);
+  }
+  EXPECT_GE(hidden, 5);
+  EXPECT_GE(held, hidden - 2);
+}
+
 TEST(DriftFit, TakesAStraightLineForALine) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const DriftFit fit = fitted(with_white(test::ramp(0.01, 0.25, n), seed));

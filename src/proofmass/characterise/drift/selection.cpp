@@ -147,6 +147,34 @@ GainTest DriftSelection::plain_test(const DriftFitAtShape& trial) const {
   return against(evidence_, plain, DriftShape::constant, {&white});
 }
 
+DriftFitAtShape DriftSelection::with_hidden_walk(const DriftFitAtShape& trial) const {
+  constexpr double negligible = 1e-3;  // of the likelihood
+  constexpr int steps = 40;
+  const double white = trial.noise.strength(trial.fit, Term::white);
+  if (trial.noise.terms != std::vector{Term::white} || white <= 0.0) return trial;
+  DriftFitAtShape walked = trial;
+  walked.noise = choice_.base();
+  const MatrixXd& P = walked.noise.P;
+  const OrdinateMeans means = restricted(evidence_, trial.at);
+  const auto with_walk = [&](double K) {
+    return evaluate_ordinates(evidence_.contrasts(), P, means,
+                              Eigen::Vector2d(white * white, K * K));
+  };
+  const double of_zero = with_walk(0.0).log_likelihood;
+  // Where the walk is as strong as the white noise at the lowest frequency, it is seen.
+  double longest = 0.01 * white * std::sqrt(P(0, 0) / P(0, 1));
+  while (with_walk(longest).log_likelihood > of_zero + std::log(negligible)) longest *= 1.3;
+  double sum = 0.0, squares = 0.0;
+  for (int k = 0; k <= steps; ++k) {
+    const double K = longest * k / steps;
+    const double weight = std::exp(with_walk(K).log_likelihood - of_zero);
+    sum += weight;
+    squares += weight * K * K;
+  }
+  walked.fit = with_walk(std::sqrt(squares / sum));
+  return walked;
+}
+
 std::vector<DriftCandidate> DriftSelection::candidates() const {
   std::vector<DriftCandidate> all;
   all.reserve(trials_.size());

@@ -49,6 +49,11 @@ class DriftSelection {
   /// Test against the constant with white noise alone, as a plain fit assumes.
   [[nodiscard]] GainTest plain_test(const DriftFitAtShape& trial) const;
 
+  /// A trial with white noise alone, with the random walk that it may hide: the curve absorbs most
+  /// of a weak one, whose most likely strength K is then zero. K² is its posterior mean, for a flat
+  /// prior of K. Other trials are returned unchanged.
+  [[nodiscard]] DriftFitAtShape with_hidden_walk(const DriftFitAtShape& trial) const;
+
   /// Best first.
   [[nodiscard]] std::vector<DriftCandidate> candidates() const;
 

@@ -29,17 +29,17 @@ void drop_plateaus(TrackSignal& signal);
 ///   in motion_error(). A cruise between two rests makes one closure velocity and the next cancel;
 ///   a tilt or a jump of the bias does not.
 /// - Prior: the first and the last interval are rests 999 times in 1000; the share of the others
-///   that are none has a beta distribution with mean 0.1. A cruise has a speed of about 0.03, 0.3, 3
-///   or 30 m/s, a plateau an acceleration of about 0.05 or 0.5 m/s²; either is usually, and a rest
-///   seldom, louder than the quietest interval. A motion between two rests whose highest speed is
-///   what remains at its end is a tilt without motion, one in five.
+///   that are none has a beta distribution with mean 0.1. A cruise has a speed of about 0.03, 0.3,
+///   3 or 30 m/s, a plateau an acceleration of about 0.05 or 0.5 m/s²; either is usually, and a
+///   rest seldom, louder than the quietest interval. A motion between two rests whose highest speed
+///   is what remains at its end is a tilt without motion, one in five.
 /// - A plateau within 2° of the interval before it may be a rest on a place that is not level: the
 ///   hypothesis with a rest there has at least a tenth of its probability.
 /// - Constant speed of the frame is not distinguishable from rest: only these priors separate a
 ///   recording that ends in motion from one that began in motion.
 ///
 /// Absent if more than sixteen intervals are ambiguous. Cost: 343 passes over the knots for each
-/// combination tried, three times with a cruise: n + 1 for each step of the climb and n²/2 at its
+/// combination tried, four times with a cruise: 2n + 1 for each step of the climb and 2n² at its
 /// end, with n ambiguous intervals.
 [[nodiscard]] std::vector<StopHypothesis> stop_hypotheses(const TrackSignal& signal,
                                                           const AxisRun& run,
