@@ -40,6 +40,21 @@ TEST(Motor, FindsTheDriveOfAnotherSimulator) {
   EXPECT_GT(found.reversals, 10U);
 }
 
+// Below their drop brushes take the whole voltage of a motor at rest, which is no back-EMF:
+// resistances were 14.7 to 15.0 ± 1.0 ohm.
+TEST(Motor, TheVoltageThatBrushesTakeAtRestIsNoMotion) {
+  const TrueDrive drive{.brush_drop = 0.7};
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const MotorSolution found =
+        estimate_motor(
+            simulated(drive, {.ripple_v = 0.0, .encoder_counts = 4096.0}, with_rests, seed))
+            .value();
+    expect_found(found, "resistance", drive.resistance, 0.05);
+    expect_found(found, "torque_constant", drive.torque_constant, 0.03);
+    expect_found(found, "coulomb_friction", drive.total_coulomb(), 0.1);
+  }
+}
+
 TEST(Motor, WithoutACurrentFindsTheRatios) {
   const TrueDrive drive;
   MotorRecord record = simulated(drive, {}, exploring, 2);

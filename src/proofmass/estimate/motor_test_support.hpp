@@ -19,6 +19,7 @@ namespace proofmass::estimate::motor_test {
 /// In coordinates of the load's shaft.
 struct TrueDrive {
   double resistance = 13.0, inductance = 0.06, torque_constant = 22.6;
+  double brush_drop = 0.0;  ///< V
   double motor_inertia = 0.6, load_inertia = 0.012;
   double viscous = 0.8;
   double coulomb = 3.0, stribeck = 1.0, stribeck_speed = 0.08;
@@ -53,13 +54,23 @@ inline double exploring(double t) {
          5.0 * std::sin(turn * 1.3 * t);
 }
 
+/// Motions of 3 s with rests of 1 s between, in both directions, fast and slow.
+inline double with_rests(double t) {
+  const double in_motion = std::fmod(t, 4.0) / 3.0;
+  if (in_motion > 1.0) return 0.0;
+  const int motion = static_cast<int>(t / 4.0);
+  const double rise = std::sin(std::numbers::pi * in_motion);
+  return (motion % 2 == 0 ? 1.0 : -1.0) * (10.0 + 14.0 * ((motion * 7) % 5) / 4.0) * rise * rise;
+}
+
 class Bodies {
  public:
   explicit Bodies(const TrueDrive& drive) : d_(drive) {}
 
   void step(double u, double h) {
-    const double di =
-        (u - d_.resistance * current - d_.torque_constant * motor_speed) / d_.inductance;
+    const double di = (u - d_.resistance * current - d_.torque_constant * motor_speed -
+                       d_.brush_drop * std::tanh(current / 0.005)) /
+                      d_.inductance;
     const double gear = contact();
     const double cogging = d_.cogging * std::sin(24.0 * 58.0 * motor_angle);
     const double motor_torque = d_.torque_constant * current - friction(h) - gear - cogging;

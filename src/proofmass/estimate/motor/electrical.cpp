@@ -34,11 +34,23 @@ struct Terms {
   MatrixXd angle, speed;
 };
 
-Terms terms_of(const Series& series) {
+// The integral of a term of the back-EMF. With hardly a current the motor stands, if the load does:
+// the back-EMF is zero there, and the voltage drops at brushes whose drop is not known.
+std::vector<double> integral_in_motion(std::vector<double> term,
+                                       const Series& series,
+                                       const Motion& motion) {
+  constexpr double share = 0.05;  // of the largest current
+  const double least_a = share * largest(series.current_a);
+  for (std::size_t k = 0; k < term.size(); ++k)
+    if (motion.contact[k] == 0 && std::abs(series.current_a[k]) < least_a) term[k] = 0.0;
+  return integral(term, series.step_s);
+}
+
+Terms terms_of(const Series& series, const Motion& motion) {
   const std::vector<double> sign = brush_sign(series.current_a);
-  const std::vector<double> voltage = integral(series.voltage_v, series.step_s),
-                            current = integral(series.current_a, series.step_s),
-                            signs = integral(sign, series.step_s),
+  const std::vector<double> voltage = integral_in_motion(series.voltage_v, series, motion),
+                            current = integral_in_motion(series.current_a, series, motion),
+                            signs = integral_in_motion(sign, series, motion),
                             change = slopes(series.current_a, series.step_s, 3);
   const auto n = static_cast<Index>(series.size());
   Terms out{MatrixXd(n, electrical_count), MatrixXd(n, electrical_count)};
@@ -91,7 +103,7 @@ ElectricalFit fit_electrical(const Series& series,
                              double resistance_per_constant) {
   const AngleErrors errors(series, motion);
   const Index unknowns = first_error + errors.count();
-  const Terms terms = terms_of(series);
+  const Terms terms = terms_of(series, motion);
   const auto used = static_cast<Index>(motion.contact.size()) -
                     std::ranges::count(motion.contact, std::int8_t{0});
   LevelRegression regression{.columns = MatrixXd(unknowns + 1, used),
