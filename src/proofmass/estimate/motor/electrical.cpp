@@ -34,23 +34,37 @@ struct Terms {
   MatrixXd angle, speed;
 };
 
-// The integral of a term of the back-EMF. With hardly a current the motor stands, if the load does:
-// the back-EMF is zero there, and the voltage drops at brushes whose drop is not known.
-std::vector<double> integral_in_motion(std::vector<double> term,
-                                       const Series& series,
-                                       const Motion& motion) {
-  constexpr double share = 0.05;  // of the largest current
+// Where the motor stands: the load rests, and hardly a current has flowed for a while, in which it
+// may have coasted.
+std::vector<bool> standing(const Series& series, const Motion& motion) {
+  constexpr double share = 0.05, coasting_s = 0.05;  // of the largest current
   const double least_a = share * largest(series.current_a);
+  std::vector<bool> stands;
+  double since_s = 0.0;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const bool idle = motion.contact[k] == 0 && std::abs(series.current_a[k]) < least_a;
+    since_s = idle ? since_s + series.step_s : 0.0;
+    stands.push_back(since_s > coasting_s);
+  }
+  return stands;
+}
+
+// The integral of a term of the back-EMF, which is zero where the motor stands: brushes take a
+// voltage below their drop without a current.
+std::vector<double> integral_in_motion(std::vector<double> term,
+                                       const std::vector<bool>& stands,
+                                       double step_s) {
   for (std::size_t k = 0; k < term.size(); ++k)
-    if (motion.contact[k] == 0 && std::abs(series.current_a[k]) < least_a) term[k] = 0.0;
-  return integral(term, series.step_s);
+    if (stands[k]) term[k] = 0.0;
+  return integral(term, step_s);
 }
 
 Terms terms_of(const Series& series, const Motion& motion) {
   const std::vector<double> sign = brush_sign(series.current_a);
-  const std::vector<double> voltage = integral_in_motion(series.voltage_v, series, motion),
-                            current = integral_in_motion(series.current_a, series, motion),
-                            signs = integral_in_motion(sign, series, motion),
+  const std::vector<bool> stands = standing(series, motion);
+  const std::vector<double> voltage = integral_in_motion(series.voltage_v, stands, series.step_s),
+                            current = integral_in_motion(series.current_a, stands, series.step_s),
+                            signs = integral_in_motion(sign, stands, series.step_s),
                             change = slopes(series.current_a, series.step_s, 3);
   const auto n = static_cast<Index>(series.size());
   Terms out{MatrixXd(n, electrical_count), MatrixXd(n, electrical_count)};
