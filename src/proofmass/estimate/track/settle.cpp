@@ -50,14 +50,24 @@ std::vector<TrackAlternative> alternatives_of(TrackSignal signal,
   std::vector<TrackAlternative> alternatives;
   for (const StopHypothesis& hypothesis : hypotheses) {
     if (hypothesis.probability < least_probability || alternatives.size() == most) break;
+    std::vector<TimeSpan> no_rests;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (!is_rest(hypothesis.stretches[i]))
+        no_rests.push_back({signal.time_s[all[i].first], signal.time_s[all[i].last]});
+    // Whether an interval is a cruise or a plateau makes no difference to the displacement.
+    const auto same = std::ranges::find_if(alternatives, [&](const TrackAlternative& one) {
+      return std::ranges::equal(one.no_rests, no_rests, {}, &TimeSpan::start_s, &TimeSpan::start_s);
+    });
+    if (same != alternatives.end()) {
+      same->probability += hypothesis.probability;
+      continue;
+    }
     signal.stops.rests = stops_of(all, hypothesis);
     const auto solved = solve(signal, options);
     if (!solved) continue;
     TrackAlternative& alternative = alternatives.emplace_back();
     alternative.probability = hypothesis.probability;
-    for (std::size_t i = 0; i < all.size(); ++i)
-      if (!is_rest(hypothesis.stretches[i]))
-        alternative.no_rests.push_back({signal.time_s[all[i].first], signal.time_s[all[i].last]});
+    alternative.no_rests = std::move(no_rests);
     const Gaussian<3>& end = solved->pass.smoothed.back();
     alternative.displacement_m = {end.mean(inertial_axis::position_m), std::sqrt(end.cov(0, 0))};
   }

@@ -158,24 +158,26 @@ RestMeans rest_means(View<View<double>> axes,
   return out;
 }
 
-// Whether the unit that ends before block `end` departs from the level of the `reach` blocks before
-// it, of the run that begins at block `first`.
+struct Unit {
+  std::size_t blocks = 1;
+  std::array<double, 3> std{};  // of its mean
+};
+
+// Whether the unit that ends before block `end` departs from the level of the blocks from `from`
+// on.
 bool departs(const std::vector<std::array<double, 3>>& means,
-             std::size_t first,
+             std::size_t from,
              std::size_t end,
-             std::size_t unit,
-             std::size_t reach,
-             const std::array<double, 3>& unit_std) {
-  if (end < first + unit + 1) return false;
-  const std::size_t begin = end - unit;
-  const std::size_t from = std::max(first, begin - std::min(begin, reach));
+             const Unit& unit) {
+  if (end < from + unit.blocks + 1) return false;
+  const std::size_t begin = end - unit.blocks;
   for (std::size_t a = 0; a < 3; ++a) {
     const Moments before = over(means, from, begin, a), now = over(means, begin, end, a);
     if (before.count == 0 || now.count == 0) continue;
     const auto units_of = [&](const Moments& mean) {
-      return static_cast<double>(mean.count) / static_cast<double>(unit);
+      return static_cast<double>(mean.count) / static_cast<double>(unit.blocks);
     };
-    const double std = unit_std[a] * std::sqrt(1.0 / units_of(now) + 1.0 / units_of(before));
+    const double std = unit.std[a] * std::sqrt(1.0 / units_of(now) + 1.0 / units_of(before));
     if (std::abs(now.mean - before.mean) > far_level * std) return true;
   }
   return false;
@@ -189,7 +191,9 @@ std::vector<std::array<std::size_t, 2>> steady_runs(const std::vector<std::array
   std::size_t first = 0;
   for (std::size_t end = 1; end <= means.size(); ++end) {
     for (std::size_t u = 0; u < units.size(); ++u) {
-      if (!departs(means, first, end, units[u], reach, found.unit_std[u])) continue;
+      const std::size_t before = std::min(end, units[u] + reach);
+      if (!departs(means, std::max(first, end - before), end, {units[u], found.unit_std[u]}))
+        continue;
       runs.push_back({first, end - units[u]});
       first = end - units[u];
       break;
