@@ -236,8 +236,8 @@ std::vector<double> covariance_by_velocity(const TrackSeries& series,
   return entries;
 }
 
-// As settle(), with the attitude that the gyroscope measures between the first and the last rest:
-// gravity is removed, and a tilt is none of what a quiet interval may be.
+// As settle(), in world axes: the gyroscope's attitude removes gravity, so that a change of level
+// is acceleration, not tilt.
 Result<Settled> settle_with_gyro(const TrackSensor& sensor,
                                  TrackSignal& signal,
                                  const TrackOptions& options) {

@@ -34,8 +34,8 @@ struct Terms {
   MatrixXd angle, speed;
 };
 
-// Where the motor stands: the load rests, and hardly a current has flowed for a while, in which it
-// may have coasted.
+// Where the motor stands: the load rests, and the current has been negligible for longer than the
+// motor coasts.
 std::vector<bool> standing(const Series& series, const Motion& motion) {
   constexpr double share = 0.05, coasting_s = 0.05;  // of the largest current
   const double least_a = share * largest(series.current_a);

@@ -66,6 +66,22 @@ void fill(const Attitude& attitude,
   }
 }
 
+// Outside of a stretch the attitude is NaN.
+Result<Attitude> undivided_attitude(const InertialSeries& series,
+                                    const std::vector<signal::Rest>& rests,
+                                    const AttitudeOptions& how) {
+  auto found = estimate_attitude(series, rests, how);
+  if (!found) return found.error();
+  const auto& stretches = found->stretches;
+  if (stretches.size() != 1 || stretches.front().first != 0 ||
+      stretches.front().last + 1 != series.time_s.size())
+    return Error{Errc::not_observable,
+                 "a gap of more than a second parts the recording, and with it the attitude: "
+                 "analyse one part, or omit the gyroscope",
+                 {Advice{"from"}, Advice{"to"}, Advice{"no-gyro"}}};
+  return found;
+}
+
 }  // namespace
 
 Result<TrackSignal> world_signal(const TrackSensor& sensor,
@@ -76,7 +92,7 @@ Result<TrackSignal> world_signal(const TrackSensor& sensor,
   how.gravity_mps2 = options.gravity_mps2;
   how.progress = options.progress;
   const auto found =
-      estimate_attitude(series, {signal.stops.rests.front(), signal.stops.rests.back()}, how);
+      undivided_attitude(series, {signal.stops.rests.front(), signal.stops.rests.back()}, how);
   if (!found) return found.error();
   TrackSignal world = signal;
   const auto accel = gravity_free_acceleration(series, *found);
@@ -97,7 +113,7 @@ Result<bool> track_aided(const TrackSensor& sensor,
   AttitudeOptions how;
   how.gravity_mps2 = options.gravity_mps2;
   how.progress = options.progress;
-  auto found = estimate_attitude(series, signal.stops.rests, how);
+  auto found = undivided_attitude(series, signal.stops.rests, how);
   if (!found) return found.error();
   const FoundAxis axis = axis_of(*found, sensor.time_s, options);
   if (!readings.fixes.empty()) {
@@ -106,12 +122,6 @@ Result<bool> track_aided(const TrackSensor& sensor,
     if (!found) return found.error();
   }
   const Attitude& attitude = *found;
-  if (attitude.stretches.size() != 1 || attitude.stretches.front().first != 0 ||
-      attitude.stretches.front().last + 1 != sensor.time_s.size())
-    return Error{Errc::not_observable,
-                 "a gap of more than a second parts the recording, and with it the attitude: "
-                 "analyse one part, or omit the gyroscope",
-                 {Advice{"from"}, Advice{"to"}, Advice{"no-gyro"}}};
   solution.axis = axis.direction;
   solution.axis_in_world = true;
   solution.travel_share = axis.share;

@@ -7,7 +7,7 @@ namespace proofmass::estimate {
 
 /// The accelerations in world axes, without gravity, by the attitude that the gyroscope measures
 /// between the first and the last rest: acceleration in the quiet intervals between does not pass
-/// for tilt. The rests are those of `signal`, two at least. Errors: as estimate_attitude().
+/// for tilt. The rests are those of `signal`, two at least. Errors: as track_aided().
 [[nodiscard]] Result<TrackSignal> world_signal(const TrackSensor& sensor,
                                                const TrackSignal& signal,
                                                const TrackOptions& options);

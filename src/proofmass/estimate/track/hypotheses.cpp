@@ -29,8 +29,8 @@ double log_loudness_density(double log_ratio, QuietStretch kind) {
 }
 
 /// Prior of the types of all intervals. The first and the last are rests 999 times in 1000. The
-/// share of the others that are none is a beta variable with mean 0.1, large in a recording of slow
-/// motion, so the counts are beta-binomial.
+/// fraction of the others that are not rests has a beta distribution with mean 0.1, since it is
+/// large in a recording of slow motion; the counts are then beta-binomial.
 double log_prior(const std::vector<QuietStretch>& kinds) {
   constexpr double none_at_an_end = 1e-3, none = 0.5, rest = 4.5;
   double log = 0.0, rests = rest, others = none;
@@ -185,8 +185,8 @@ std::vector<std::size_t> doubtful(const std::vector<double>& left_over) {
   return found;
 }
 
-/// Between two rests a motion gains speed and loses it. If its highest speed is what remains at its
-/// end, there was none: the sensor was only tilted, which is less usual.
+/// A motion between two rests gains speed and loses it. If its highest speed is the one that
+/// remains at its end, only a tilt without motion explains it, which is less likely.
 double log_prior_of_tilts(const std::vector<QuietStretch>& kinds,
                           const std::vector<double>& left_over) {
   constexpr double all = 0.75, only_tilted = 0.2;

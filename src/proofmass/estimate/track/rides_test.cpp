@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <limits>
 #include <numbers>
 
 #include "proofmass/estimate/track/rides_test_support.hpp"
@@ -124,6 +126,19 @@ TEST(TrackRides, AGyroscopeDoesNotMakeQuietIntervalsRests) {
   EXPECT_GE(moves.given, 9);
   EXPECT_GE(moves.held, moves.given - 1);
   EXPECT_EQ(moves.wrong, 0);
+}
+
+// Without the accelerometer for more than a second the attitude is parted: this aborted.
+TEST(TrackRides, AGapInTheAccelerationsBesideAGyroscopeIsAnError) {
+  Draw draw(2);
+  rides::Ride ride = rides::slow_moves(draw);
+  ride.has_gyro = true;
+  rides::RideRecord made = rides::record(ride, draw);
+  for (auto& axis : made.sensor.accel_mps2)
+    std::fill_n(axis.begin() + 600, 200, std::numeric_limits<double>::quiet_NaN());
+  const auto found = estimate_track(made.sensor, {});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, Errc::not_observable);
 }
 
 // The level differs from rest to rest. The hypotheses were compared by different numbers of
