@@ -7,6 +7,7 @@
 #include "proofmass/estimate/attitude.hpp"
 #include "proofmass/estimate/track/findings.hpp"
 #include "proofmass/estimate/track/motion.hpp"
+#include "proofmass/signal/channel_audit.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -66,6 +67,15 @@ void fill(const Attitude& attitude,
   }
 }
 
+// Measurements that no sensor gives, such as 3e34, are missing.
+InertialSeries plausible(const TrackSensor& sensor) {
+  InertialSeries series{sensor.time_s, sensor.rate_radps, sensor.accel_mps2};
+  for (auto* sensors : {&series.rate_radps, &series.accel_mps2})
+    for (auto& axis : *sensors)
+      for (double& value : axis) value = signal::plausible_or_nan(value);
+  return series;
+}
+
 // Outside of a stretch the attitude is NaN.
 Result<Attitude> undivided_attitude(const InertialSeries& series,
                                     const std::vector<signal::Rest>& rests,
@@ -87,7 +97,7 @@ Result<Attitude> undivided_attitude(const InertialSeries& series,
 Result<TrackSignal> world_signal(const TrackSensor& sensor,
                                  const TrackSignal& signal,
                                  const TrackOptions& options) {
-  const InertialSeries series{sensor.time_s, sensor.rate_radps, sensor.accel_mps2};
+  const InertialSeries series = plausible(sensor);
   AttitudeOptions how;
   how.gravity_mps2 = options.gravity_mps2;
   how.progress = options.progress;
@@ -109,7 +119,7 @@ Result<bool> track_aided(const TrackSensor& sensor,
                          const TrackReadings& readings,
                          const TrackOptions& options,
                          TrackSolution& solution) {
-  const InertialSeries series{sensor.time_s, sensor.rate_radps, sensor.accel_mps2};
+  const InertialSeries series = plausible(sensor);
   AttitudeOptions how;
   how.gravity_mps2 = options.gravity_mps2;
   how.progress = options.progress;

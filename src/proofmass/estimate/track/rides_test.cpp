@@ -141,6 +141,21 @@ TEST(TrackRides, AGapInTheAccelerationsBesideAGyroscopeIsAnError) {
   EXPECT_EQ(found.error().code, Errc::not_observable);
 }
 
+// 3e34 beside a gyroscope was taken for motion: 0 ± 4e32 m.
+TEST(TrackRides, AnImpossibleSampleBesideAGyroscopeIsMissing) {
+  Draw draw(2);
+  rides::Ride ride = rides::slow_moves(draw);
+  ride.has_gyro = true;
+  rides::RideRecord made = rides::record(ride, draw);
+  const TrackSolution before = estimate_track(made.sensor, {}).value();
+  std::fill_n(made.sensor.accel_mps2[0].begin() + 60, 5, 3e34);
+  const TrackSolution found = estimate_track(made.sensor, {}).value();
+  ASSERT_TRUE(before.smoother && found.smoother);
+  EXPECT_NEAR(found.smoother->displacement_m.value, before.smoother->displacement_m.value,
+              3.0 * before.smoother->displacement_m.std);
+  EXPECT_LT(found.smoother->displacement_m.std, 2.0 * before.smoother->displacement_m.std);
+}
+
 // The level differs from rest to rest. The hypotheses were compared by different numbers of
 // measurements, in favour of constant accelerations.
 TEST(TrackRides, RestsOnAnAlmostLevelFloorAreRests) {
