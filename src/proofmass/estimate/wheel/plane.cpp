@@ -77,13 +77,10 @@ WheelPlane plane_about(const Axis& axis) {
   return plane;
 }
 
-/// Medians of the force over intervals of a twentieth of a second, in shorter recordings over a
-/// tenth of the rows: vibration and single bad rows are suppressed, rotation is not.
-Eigen::MatrixX3d averaged(const WheelSensor& sensor, const std::vector<std::size_t>& rows) {
-  const double span_s = sensor.time_s[rows.back()] - sensor.time_s[rows.front()];
-  const double rate_hz = span_s > 0.0 ? static_cast<double>(rows.size()) / span_s : 0.0;
-  const auto wanted = static_cast<std::size_t>(std::clamp(0.05 * rate_hz, 1.0, 1e4));
-  const std::size_t each = std::min(wanted, std::max<std::size_t>(rows.size() / 10, 1));
+/// Medians of the force over `each` rows: vibration and single bad rows are suppressed.
+Eigen::MatrixX3d averaged(const WheelSensor& sensor,
+                          const std::vector<std::size_t>& rows,
+                          std::size_t each) {
   const std::size_t count = rows.size() / each;
   Eigen::MatrixX3d medians(static_cast<Eigen::Index>(count), 3);
   std::vector<double> stretch(each);
@@ -94,6 +91,15 @@ Eigen::MatrixX3d averaged(const WheelSensor& sensor, const std::vector<std::size
       medians(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(axis)) = *median(stretch);
     }
   return medians;
+}
+
+/// Rows of a twentieth of a second, in which most wheels hardly rotate, in shorter recordings a
+/// tenth of the rows.
+std::size_t rows_to_average(const WheelSensor& sensor, const std::vector<std::size_t>& rows) {
+  const double span_s = sensor.time_s[rows.back()] - sensor.time_s[rows.front()];
+  const double rate_hz = span_s > 0.0 ? static_cast<double>(rows.size()) / span_s : 0.0;
+  const auto wanted = static_cast<std::size_t>(std::clamp(0.05 * rate_hz, 1.0, 1e4));
+  return std::min(wanted, std::max<std::size_t>(rows.size() / 10, 1));
 }
 
 /// Clips values that lie further outside the middle nine tenths of a column than those are wide, so
@@ -121,6 +127,10 @@ Result<WheelPlane> assume_plane(const Eigen::MatrixX3d& means) {
   return plane;
 }
 
+Axis axis_of(const SymmetricEigen& spread, Eigen::Index which) {
+  return {spread.vectors(0, which), spread.vectors(1, which), spread.vectors(2, which)};
+}
+
 SymmetricEigen covariance_of(const Eigen::MatrixX3d& rows) {
   const Eigen::MatrixX3d centred = rows.rowwise() - rows.colwise().mean();
   return symmetric_eigen(centred.transpose() * centred / static_cast<double>(rows.rows()));
@@ -131,34 +141,74 @@ bool is_axle(const SymmetricEigen& spread) {
   return spread.values(1) >= 16.0 * std::max(spread.values(0), 0.0);
 }
 
-/// The spread of the changes from one interval to the next: a vehicle that turns is accelerated
-/// along the axle, slowly. A rotation changes two directions alike.
-std::optional<SymmetricEigen> spread_of_changes(const Eigen::MatrixX3d& means) {
-  const Eigen::Index count = means.rows() - 1;
-  const SymmetricEigen changes = covariance_of(means.bottomRows(count) - means.topRows(count));
-  constexpr double alike = 0.25;
-  const bool is_rotation = is_axle(changes) && changes.values(1) >= alike * changes.values(2);
-  return is_rotation ? std::optional(changes) : std::nullopt;
+/// True if changes are those of gravity that rotates: along two directions alike.
+bool is_rotation(const SymmetricEigen& changes) {
+  constexpr double alike = 0.25, much_alike = 0.7, least_ratio = 4.0;
+  const double ratio = changes.values(1) / changes.values(2);
+  return (is_axle(changes) && ratio >= alike) ||
+         (ratio >= much_alike && changes.values(1) >= least_ratio * changes.values(0));
 }
 
-Result<WheelPlane> plane_from(const Eigen::MatrixX3d& means) {
-  SymmetricEigen spread = covariance_of(means);
-  // 0.3 m/s² of spread: gravity rotated by some 25 degrees. Less may be vibration.
-  const bool is_rotated = spread.values(1) >= 0.09;
-  if (is_rotated && !is_axle(spread)) {
-    if (const auto changes = spread_of_changes(means)) spread = *changes;
+/// The axle as the direction in which the force changes least from one interval to the next: a
+/// vehicle that turns is accelerated along the axle, and one that accelerates changes the
+/// centripetal force, slowly. The Coriolis force of its turns on a sensor that is fast on its wheel
+/// is along the axle and proportional to gravity's radial component: a direction along which the
+/// force varies by far the most, which is then that of the centripetal force, is orthogonal to the
+/// axle.
+std::optional<Axis> axle_of_changes(const Eigen::MatrixX3d& means, const SymmetricEigen& spread) {
+  const Eigen::MatrixX3d changes =
+      means.bottomRows(means.rows() - 1) - means.topRows(means.rows() - 1);
+  Eigen::Matrix3d cov = changes.transpose() * changes / static_cast<double>(changes.rows());
+  if (spread.values(2) >= 16.0 * spread.values(1)) {
+    const Eigen::Vector3d radial = spread.vectors.col(2);
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - radial * radial.transpose();
+    cov = across * cov * across + radial.dot(cov * radial) * radial * radial.transpose();
   }
-  if (!is_rotated || !is_axle(spread)) {
-    if (spread.values(2) < 1.0) return assume_plane(means);
+  const SymmetricEigen found = symmetric_eigen(cov);
+  return is_rotation(found) ? std::optional(axis_of(found, 0)) : std::nullopt;
+}
+
+/// The axle by what the force does, of means over a twentieth of a second, or of rows: a fast wheel
+/// rotates by radians in that time.
+std::optional<Axis> axle_of_force(const Eigen::MatrixX3d& means, const Eigen::MatrixX3d& rows) {
+  const SymmetricEigen spread = covariance_of(means);
+  // 0.3 m/s² of spread: gravity rotated by some 25 degrees. Less may be vibration.
+  if (spread.values(1) < 0.09) return std::nullopt;
+  if (is_axle(spread)) return axis_of(spread, 0);
+  if (const auto axle = axle_of_changes(means, spread)) return axle;
+  return axle_of_changes(rows, spread);
+}
+
+/// The axis of the largest rates of rotation, of a gyroscope that shows whole turns.
+std::optional<Axis> spin_axis(const WheelSensor& sensor, const std::vector<std::size_t>& rows) {
+  if (sensor.rate_radps[0].empty()) return std::nullopt;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const std::size_t row : rows) {
+    const Eigen::Vector3d rate{sensor.rate_radps[0][row], sensor.rate_radps[1][row],
+                               sensor.rate_radps[2][row]};
+    if (rate.norm() < beyond_belief_radps) spread += rate * rate.transpose();
+  }
+  const SymmetricEigen rates = symmetric_eigen(spread / static_cast<double>(rows.size()));
+  // A vehicle's turns are far slower than its wheels'.
+  if (rates.values(2) < 1.0 || rates.values(2) < 16.0 * rates.values(1)) return std::nullopt;
+  return axis_of(rates, 2);
+}
+
+Result<WheelPlane> plane_from(const WheelSensor& sensor,
+                              const std::vector<std::size_t>& rows,
+                              const Eigen::MatrixX3d& means) {
+  std::optional<Axis> axis = axle_of_force(means, averaged(sensor, rows, 1));
+  if (!axis) axis = spin_axis(sensor, rows);
+  if (!axis) {
+    if (covariance_of(means).values(2) < 1.0) return assume_plane(means);
     return Error{
         Errc::not_observable,
         "the force changes along one direction only: a wheel that rocks, or one whose axle is "
         "upright; state the axle, or record a whole turn",
         {Advice{"spin-axis"}}};
   }
-  Axis axis{spread.vectors(0, 0), spread.vectors(1, 0), spread.vectors(2, 0)};
-  if (axis[largest(axis)] < 0.0) axis = scaled(axis, -1.0);
-  return plane_about(axis);
+  if ((*axis)[largest(*axis)] < 0.0) *axis = scaled(*axis, -1.0);
+  return plane_about(*axis);
 }
 
 /// Measurements at a channel's largest value for three rows or more: the end of the gyroscope's
@@ -339,11 +389,11 @@ Result<WheelPlane> find_plane(const WheelSensor& sensor,
   if (given && !(dot(*given, *given) > 0.0))
     return Error{Errc::invalid_argument,
                  "the spin axis has length 0; give it as x, y, z or a vector"};
-  Eigen::MatrixX3d means = averaged(sensor, rows);
+  Eigen::MatrixX3d means = averaged(sensor, rows, rows_to_average(sensor, rows));
   limit(means);
   Result<WheelPlane> found = given ? Result<WheelPlane>(plane_about(*given))
                              : sensor.accel_mps2[2].empty() ? plane_about({0.0, 0.0, 1.0})
-                                                            : plane_from(means);
+                                                            : plane_from(sensor, rows, means);
   if (!found) return found;
   WheelPlane plane = *found;
   const Eigen::Vector3d axis(plane.axis[0], plane.axis[1], plane.axis[2]);

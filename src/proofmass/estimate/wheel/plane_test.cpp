@@ -1,5 +1,6 @@
 #include "proofmass/estimate/wheel/plane.hpp"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include "proofmass/estimate/wheel_test_support.hpp"
@@ -74,6 +75,50 @@ TEST(WheelPlane, OfAVehicleThatTurnsIsFoundDespiteItsLateralAcceleration) {
   const WheelPlane plane = plane_of(sensor);
   EXPECT_NEAR(plane.axis[2], 1.0, 1e-3);
   EXPECT_FALSE(plane.assumed);
+}
+
+// A wheel at 30 to 40 rad/s under a vehicle that turns left at 0.3 rad/s, in its own axes: z along
+// the axle. The Coriolis acceleration of the sensor is along the axle, and in phase with gravity's
+// radial part.
+WheelSensor fast_wheel_in_a_bend(bool with_gyroscope) {
+  constexpr double lever_m = 0.15, yaw_radps = 0.3, rate_hz = 100.0;
+  WheelSensor sensor;
+  for (auto& axis : sensor.accel_mps2) axis.clear();
+  double angle = 0.0;
+  for (std::size_t k = 0; k < 4000; ++k) {
+    const double t = static_cast<double>(k) / rate_hz;
+    const double speed = 35.0 + 5.0 * std::sin(0.3 * t), lateral = yaw_radps * 0.3 * speed;
+    angle += speed / rate_hz;
+    const double c = std::cos(angle), s = std::sin(angle);
+    sensor.time_s.push_back(t);
+    sensor.accel_mps2[0].push_back(standard_gravity_mps2 * c - speed * speed * lever_m);
+    sensor.accel_mps2[1].push_back(-standard_gravity_mps2 * s);
+    sensor.accel_mps2[2].push_back(lateral + 2.0 * yaw_radps * speed * lever_m * c);
+    if (!with_gyroscope) continue;
+    sensor.rate_radps[0].push_back(yaw_radps * c);
+    sensor.rate_radps[1].push_back(-yaw_radps * s);
+    sensor.rate_radps[2].push_back(speed);
+  }
+  return sensor;
+}
+
+TEST(WheelPlane, OfAFastWheelIsNotTurnedByTheCoriolisForceOfABend) {
+  for (const bool with_gyroscope : {false, true}) {
+    const WheelPlane plane = plane_of(fast_wheel_in_a_bend(with_gyroscope));
+    EXPECT_NEAR(std::abs(plane.axis[2]), 1.0, 1e-4) << with_gyroscope;
+    EXPECT_FALSE(plane.assumed);
+  }
+}
+
+TEST(WheelPlane, IsThatOfTheGyroscopeWhereVibrationHidesTheRotationOfGravity) {
+  WheelSensor sensor = fast_wheel_in_a_bend(true);
+  for (std::size_t k = 0; k < sensor.time_s.size(); ++k)
+    sensor.accel_mps2[2][k] += 20.0 * std::sin(2.1 * static_cast<double>(k * k));
+  EXPECT_NEAR(plane_of(sensor).axis[2], 1.0, 1e-3);
+  for (auto& axis : sensor.rate_radps) axis.clear();
+  const auto found = find_plane(sensor, screen_rows(sensor), {});
+  ASSERT_FALSE(found.has_value());
+  EXPECT_EQ(found.error().code, Errc::not_observable);
 }
 
 TEST(WheelPlane, GivenIsTakenAtAnyLengthAndEitherWay) {
