@@ -53,6 +53,12 @@ class Drive:
     def encoder(self, side) -> str:
         return "time (s),encoder\n" + "".join(f"{t:.3f},{int(a[side] * 1000 / (2 * math.pi))}\n" for t, *_, a in self.rows)
 
+    def frame(self) -> str:
+        noise = random.Random("frame")
+        return "time (s),acc_x (m/s^2),acc_y (m/s^2),acc_z (m/s^2),gyr_x (rad/s),gyr_y (rad/s),gyr_z (rad/s)\n" + "".join(
+            f"{t:.3f},0.1,{v * w:.4f},{GRAVITY + 0.05 * noise.gauss(0, 1):.4f},0.001,0.002,{w + 0.01 + 0.002 * noise.gauss(0, 1):.5f}\n"
+            for t, _, _, _, v, w, _ in self.rows)
+
     def nmea(self) -> str:
         """At 5 Hz from 10:00:00, with the vehicle heading north-east at the start."""
         noise, lines = random.Random("fixes"), []
@@ -122,6 +128,22 @@ class Vehicle(CommandTest):
         document = self.document("drive", "--right", "right.csv", "--left", "left.csv", "--counts-per-turn", 1000,
                                  *self.known)
         self.close(document["distance_m"], self.drive.distance, 0.01 * self.drive.distance)
+
+    def test_files_of_one_logger_from_zero_share_a_clock(self):
+        for side in ("right", "left"):
+            self.write(f"{side}.csv", self.drive.encoder(side))
+        self.write("frame.csv", self.drive.frame())
+        words = ("drive", "--right", "right.csv", "--left", "left.csv", "--frame", "frame.csv", "--counts-per-turn", 1000,
+                 *self.known)
+        document = self.document(*words)
+        self.assertEqual([offset["value"] for offset in document["clock_offsets_s"]], [0, 0, 0])
+        self.close(document["heading_change_rad"], self.drive.turn, 0.1)
+        # A shorter file is another recorder's: its clock is found by the turns of the wheels.
+        self.write("frame.csv", "".join(line + "\n" for i, line in enumerate(self.drive.frame().splitlines())
+                                        if i == 0 or i > 50))
+        document = self.document(*words)
+        self.assertEqual(document["clock_offsets_s"][1]["value"], 0)
+        self.close(document["heading_change_rad"], self.drive.turn, 0.1)
 
     def test_what_is_missing_is_said(self):
         self.assertIn("--right", self.expect_failure(USAGE, "drive", "--frame", "right.csv"))

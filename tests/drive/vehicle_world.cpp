@@ -49,8 +49,12 @@ Course make_course(const Scenario& scenario, std::uint64_t seed) {
     const double up = std::clamp((t - rest_s) / 8.0, 0.0, 1.0);
     const double down = std::clamp((scenario.duration_s - rest_s - t) / 8.0, 0.0, 1.0);
     const auto smooth = [](double s) { return s * s * s * (10.0 - s * (15.0 - 6.0 * s)); };
-    const double speed =
-        top * smooth(up) * smooth(down) * (1.0 + ripple * std::sin(0.35 * t + sway));
+    double speed = top * smooth(up) * smooth(down) * (1.0 + ripple * std::sin(0.35 * t + sway));
+    if (scenario.stops)
+      for (const double third : {1.0, 2.0}) {
+        const double off_s = std::abs(t - third * scenario.duration_s / 3.0);
+        speed *= smooth(std::clamp((off_s - 2.0) / 4.0, 0.0, 1.0));
+      }
     double curvature = 0.0;
     for (std::size_t i = 0; i < size.size(); ++i)
       curvature += size[i] * std::sin(rate[i] * t + phase[i]);
@@ -352,6 +356,25 @@ const std::vector<Scenario>& scenarios() {
        .encoders = true,
        .circumference_known = false,
        .track_known = false},
+      {.name = "encoder-stops",
+       .gyroscopes = false,
+       .frame = true,
+       .encoders = true,
+       .steered_known = false,
+       .stops = true},
+      {.name = "encoder-sides",
+       .gyroscopes = false,
+       .encoders = true,
+       .own_clocks = true,
+       .stops = true},
+      {.name = "encoder-gnss-stops",
+       .gyroscopes = false,
+       .fixes = true,
+       .encoders = true,
+       .steered_known = false,
+       .circumference_known = false,
+       .track_known = false,
+       .stops = true},
       {.name = "gyro"},
       {.name = "gyro-clocks", .own_clocks = true},
       {.name = "accel", .gyroscopes = false},

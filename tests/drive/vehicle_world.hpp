@@ -23,6 +23,7 @@ struct Scenario {
   bool steered_known = true;
   bool circumference_known = true, track_known = true;
   bool own_clocks = false;  ///< each side has a clock of its own
+  bool stops = false;       ///< stands for some seconds twice on the way
   double duration_s = 80.0;
   double slip_m_per_rtm = 0.004;
   double wander_m = 0.8, wander_s = 25.0;

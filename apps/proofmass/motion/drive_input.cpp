@@ -23,7 +23,8 @@ std::string small_letters(std::string text) {
 }
 
 // Recordings are of one clock if its readings overlap. Stamps that begin at zero are those of the
-// file, not of a clock that others share.
+// file, not of a clock that others share, unless the files have the same number of samples and the
+// same duration, as the files of one logger.
 class ClockGroups {
  public:
   struct Place {
@@ -32,28 +33,30 @@ class ClockGroups {
   };
 
   Place place(const Recording& recording) {
-    const auto& start = recording.time.start_ns;
-    const int next = static_cast<int>(groups_.size());
-    if (!start || *start == 0) {
-      groups_.push_back({});
-      return {next, 0.0};
-    }
-    const std::int64_t end =
-        *start + static_cast<std::int64_t>(recording.duration_s() / seconds_per_ns);
+    const std::int64_t start = recording.time.start_ns.value_or(0);
+    const auto duration =
+        static_cast<std::int64_t>(std::llround(recording.duration_s() / seconds_per_ns));
+    const Group now{start, start, start + duration, recording.samples()};
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       Group& group = groups_[g];
-      if (!group.shared || *start > group.last_ns || end < group.first_ns) continue;
-      group.last_ns = std::max(group.last_ns, end);
-      return {static_cast<int>(g), static_cast<double>(*start - group.origin_ns) * seconds_per_ns};
+      if (!group.is_shared_by(now)) continue;
+      group.last_ns = std::max(group.last_ns, now.last_ns);
+      return {static_cast<int>(g), static_cast<double>(start - group.origin_ns) * seconds_per_ns};
     }
-    groups_.push_back({true, *start, *start, end});
-    return {next, 0.0};
+    groups_.push_back(now);
+    return {static_cast<int>(groups_.size()) - 1, 0.0};
   }
 
  private:
   struct Group {
-    bool shared = false;
     std::int64_t origin_ns = 0, first_ns = 0, last_ns = 0;
+    std::size_t samples = 0;
+
+    [[nodiscard]] bool is_shared_by(const Group& other) const {
+      if (origin_ns == 0 || other.origin_ns == 0)
+        return origin_ns == other.origin_ns && last_ns == other.last_ns && samples == other.samples;
+      return other.first_ns <= last_ns && other.last_ns >= first_ns;
+    }
   };
   std::vector<Group> groups_;
 };

@@ -20,7 +20,7 @@ using namespace drive;
 constexpr double least_correlation = 0.3;
 constexpr double least_common_s = 3.0;
 constexpr double unknown_radius_m = 0.3;  // with no scale, lengths are in units of this
-// Standard deviations of offsets found by correlation, before the filter refines them.
+// Least standard deviations of offsets found by correlation, before the filter refines them.
 constexpr double wheel_offset_std_s = 0.1, fix_offset_std_s = 0.4;
 constexpr Uncertain usual_track_m{1.2, 0.6}, usual_base_m{2.6, 0.5};
 
@@ -94,8 +94,9 @@ Status relate(const DriveWheel& wheel,
   const bool known = clock == 0 || all.recorded.offset_std_s[at_clock] > 0.0;
   const std::optional<double> expected =
       known ? std::optional(all.recorded.offset_s[at_clock]) : std::nullopt;
-  const Alignment found = align(speed_signal(traces.front()), speed_signal(traces[i]), expected);
-  if (found.correlation < least_correlation)
+  const Alignment found =
+      align(log_speed(speed_signal(traces.front())), log_speed(speed_signal(traces[i])), expected);
+  if (!known && found.correlation < least_correlation)
     return Error{Errc::not_observable, wheel.sensor.name + ": its speed resembles that of " +
                                            solution.wheels.front().name +
                                            " at no offset of their clocks: not of one drive"};
@@ -111,7 +112,8 @@ Status relate(const DriveWheel& wheel,
   if (!known || clock != clocks.number(wheel.clock)) {
     offset_s = found.offset_s;
     all.recorded.offset_s[static_cast<std::size_t>(clock)] = offset_s;
-    all.recorded.offset_std_s[static_cast<std::size_t>(clock)] = wheel_offset_std_s;
+    all.recorded.offset_std_s[static_cast<std::size_t>(clock)] =
+        std::max(wheel_offset_std_s, found.std_s);
   }
   if (same_way(traces.front(), traces[i], offset_s) < 0.0) reverse(traces[i]);
   return Done{};
@@ -125,38 +127,74 @@ void face_forward(std::vector<Trace>& traces) {
   for (Trace& trace : traces) reverse(trace);
 }
 
-Status add_frame(const DriveFrame& frame, Clocks& clocks, Gathered& all, DriveSolution& solution) {
+// Turns of the vehicle on the first wheel's clock: by the gyroscope of a wheel, whose steering is
+// part of it only briefly, or by the difference of the two sides, in turns of the wheels.
+std::optional<Signal> turns_of(const std::vector<DriveWheel>& wheels, const Gathered& all) {
+  const std::vector<Trace>& traces = all.recorded.wheels;
+  const auto offset_s = [&](std::size_t i) {
+    return all.recorded.offset_s[static_cast<std::size_t>(all.setting.vehicle.clock[i])];
+  };
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    if (traces[i].yaw_rad.empty()) continue;
+    Signal turns{traces[i].time_s, traces[i].yaw_rad};
+    for (double& t : turns.time_s) t -= offset_s(i);
+    return turns;
+  }
+  const auto right = std::ranges::find(wheels, VehicleSide::right, &DriveWheel::side);
+  const auto left = std::ranges::find(wheels, VehicleSide::left, &DriveWheel::side);
+  if (right == wheels.end() || left == wheels.end()) return std::nullopt;
+  const auto r = static_cast<std::size_t>(right - wheels.begin());
+  const auto l = static_cast<std::size_t>(left - wheels.begin());
+  Signal turns;
+  for (std::size_t k = 0; k < traces[r].time_s.size(); ++k) {
+    const double t = traces[r].time_s[k] - offset_s(r);
+    if (t < all.recorded.start_s || t > all.recorded.end_s) continue;
+    turns.time_s.push_back(t);
+    turns.values.push_back(traces[r].angle_rad[k] -
+                           at_time(traces[l].time_s, traces[l].angle_rad, t + offset_s(l)));
+  }
+  return turns;
+}
+
+// Offset of the frame's clock by the turns of the vehicle; a note if it cannot be determined.
+Result<Alignment> relate_frame(const DriveFrame& frame,
+                               const std::vector<DriveWheel>& wheels,
+                               const Gathered& all) {
+  const auto turns = turns_of(wheels, all);
+  if (!turns || frame.sensor.rate_radps[0].empty())
+    return Error{Errc::not_observable,
+                 frame.sensor.name +
+                     ": its clock is not that of a wheel, and the wheels show no "
+                     "turns to relate them by"};
+  const auto trace = trace_frame(
+      frame.sensor, {{frame.sensor.time_s.front(), frame.sensor.time_s.front() + 1.0, 0, {}}});
+  if (!trace) return trace.error();
+  const Alignment found = align(*turns, {trace->time_s, trace->yaw_rad});
+  if (found.correlation < least_correlation)
+    return Error{Errc::not_observable,
+                 frame.sensor.name +
+                     ": its turns resemble those of the wheels at no offset of their clocks"};
+  return found;
+}
+
+Status add_frame(const DriveFrame& frame,
+                 const std::vector<DriveWheel>& wheels,
+                 Clocks& clocks,
+                 Gathered& all,
+                 DriveSolution& solution) {
   const int clock = clocks.number(frame.clock);
   const auto at_clock = static_cast<std::size_t>(clock);
-  double offset_s = all.recorded.offset_s[at_clock];
   if (clock != 0 && all.recorded.offset_std_s[at_clock] == 0.0) {
-    // By the yaw of a wheel, whose steering is part of it only briefly.
-    const auto with_yaw = std::ranges::find_if(
-        all.recorded.wheels, [](const Trace& trace) { return !trace.yaw_rad.empty(); });
-    if (with_yaw == all.recorded.wheels.end() || frame.sensor.rate_radps[0].empty()) {
-      solution.notes.push_back(
-          {Severity::warning,
-           frame.sensor.name + ": its clock is not that of a wheel, and no wheel has a gyroscope "
-                               "to relate them by: it is not used"});
+    const auto found = relate_frame(frame, wheels, all);
+    if (!found && found.error().code != Errc::not_observable) return found.error();
+    if (!found) {
+      solution.notes.push_back({Severity::warning, found.error().message + ": it is not used"});
       return Done{};
     }
-    const auto trace = trace_frame(
-        frame.sensor, {{frame.sensor.time_s.front(), frame.sensor.time_s.front() + 1.0, 0, {}}});
-    if (!trace) return trace.error();
-    const auto wheel = static_cast<std::size_t>(with_yaw - all.recorded.wheels.begin());
-    const auto wheel_clock = static_cast<std::size_t>(all.setting.vehicle.clock[wheel]);
-    const Alignment found =
-        align({with_yaw->time_s, with_yaw->yaw_rad}, {trace->time_s, trace->yaw_rad});
-    if (std::abs(found.correlation) < least_correlation) {
-      solution.notes.push_back(
-          {Severity::warning, frame.sensor.name + ": its turns resemble those of the wheels at "
-                                                  "no offset of their clocks: it is not used"});
-      return Done{};
-    }
-    offset_s = found.offset_s + all.recorded.offset_s[wheel_clock];
-    all.recorded.offset_s[at_clock] = offset_s;
-    all.recorded.offset_std_s[at_clock] = 2.0 * wheel_offset_std_s;
+    all.recorded.offset_s[at_clock] = found->offset_s;
+    all.recorded.offset_std_s[at_clock] = std::max(2.0 * wheel_offset_std_s, found->std_s);
   }
+  const double offset_s = all.recorded.offset_s[at_clock];
   all.setting.vehicle.clock[most_drive_wheels] = clock;
   std::vector<Stretch> rests = rests_of(all.recorded.wheels.front(), 1.0);
   for (Stretch& rest : rests) {
@@ -286,7 +324,8 @@ Result<Gathered> gather(const std::vector<DriveWheel>& wheels,
   if (recorded.end_s - recorded.start_s < least_common_s)
     return Error{Errc::not_observable, "the wheels' recordings have no three seconds in common"};
   if (frame)
-    if (Status status = add_frame(*frame, clocks, all, solution); !status) return status.error();
+    if (Status status = add_frame(*frame, wheels, clocks, all, solution); !status)
+      return status.error();
   if (fixes)
     if (Status status = add_fixes(*fixes, clocks, all, solution); !status) return status.error();
   set_radii(wheels, all);
@@ -361,12 +400,22 @@ void warn_of_steering(const std::vector<DriveWheel>& wheels,
   }
 }
 
+// The wheels of one axle show by a gyroscope of theirs alone whether they steer.
+bool show_steering(const std::vector<DriveWheel>& wheels, const Recorded& recorded) {
+  const auto lefts = std::ranges::count(wheels, VehicleSide::left, &DriveWheel::side);
+  const auto rights = std::ssize(wheels) - lefts;
+  return std::max(lefts, rights) > 1 || recorded.wheels_have_yaw();
+}
+
 // The most probable assignment; the first, all unsteered, unless another is clearly more so.
 Fitted fit_best(const std::vector<DriveWheel>& wheels,
                 const DriveOptions& options,
                 Gathered& all,
                 DriveSolution& solution) {
-  constexpr double clear = 5.0;  // ln of the likelihood ratio
+  // ln of the likelihood ratio, at the most probable paths where speed and yaw rate are free: the
+  // likelihood itself, an integral over both, has a factor that depends on what they are chosen to
+  // be (here of the unsteered axle), and favours the hypothesis in which the vehicle is slower.
+  constexpr double clear = 5.0;
   const std::vector<Steered> choices = assignments(wheels);
   // A single wheel shows only by the fixes' noise that it steers: that noise must be estimated.
   const Effort effort = choices.size() <= 2 ? Effort::comparison : Effort::quick_comparison;
@@ -374,10 +423,10 @@ Fitted fit_best(const std::vector<DriveWheel>& wheels,
   double first = 0.0, best = -INFINITY;
   std::vector<double> likelihoods;
   for (const Steered& steered : choices) {
-    // Without a gyroscope the wheels of one axle do not show whether they steer.
-    if (choices.size() == 1 || !all.recorded.has_yaw()) break;
+    if (choices.size() == 1 || !show_steering(wheels, all.recorded)) break;
     set_geometry(wheels, options, steered, all.setting);
-    const double now = fit_path(all.recorded, all.setting, effort, {}).pass.log_likelihood;
+    const Pass pass = fit_path(all.recorded, all.setting, effort, {}).pass;
+    const double now = effort == Effort::comparison ? pass.log_likelihood : -0.5 * pass.chi2;
     if (!std::isfinite(best)) first = now;
     likelihoods.push_back(now);
     if (now > best + (std::isfinite(best) ? clear : 0.0)) {
@@ -444,6 +493,12 @@ Result<DriveSolution> estimate_drive(const std::vector<DriveWheel>& wheels,
   if (!gathered) return gathered.error();
   Gathered all = std::move(gathered).value();
   const Fitted fitted = fit_best(wheels, options, all, solution);
+  if (!fitted.converged)
+    return Error{
+        Errc::not_observable,
+        "the path does not converge: too little is known of the vehicle's dimensions, or the "
+        "recordings contradict each other",
+        {Advice{"circumference"}, Advice{"track"}}};
   report_findings(all.recorded, fitted, known_of(wheels, options, all, fitted), solution);
   return solution;
 }

@@ -27,6 +27,12 @@ struct Changes {
     for (const double value : values) sum += value * value;
     return sum;
   }
+  // Independent changes: those over change_s follow each other, and the largest count most.
+  [[nodiscard]] double independent(double change_s) const {
+    double fourth = 0.0;
+    for (const double value : values) fourth += square(value * value);
+    return fourth > 0.0 ? std::max(1.0, square(power()) / fourth * step_s / change_s) : 1.0;
+  }
 };
 
 Changes changes_of(const Signal& signal, double step_s, double change_s) {
@@ -51,9 +57,12 @@ double duration(const Signal& signal) {
   return signal.time_s.back() - signal.time_s.front();
 }
 
-}  // namespace
-
-namespace {
+// Fisher's transformation of a correlation; of the sampling distribution of n pairs with the
+// variance 1/n.
+double fisher(double correlation) {
+  constexpr double largest = 0.999999;
+  return std::atanh(std::clamp(correlation, -largest, largest));
+}
 
 Alignment align_changes(const Signal& first,
                         const Signal& second,
@@ -77,7 +86,10 @@ Alignment align_changes(const Signal& first,
     const double off_s = std::abs(offset_of(static_cast<double>(lag)) - expected_s.value_or(0.0));
     if (expected_s && off_s < 0.5 && value > near.value) near = {value, lag};
   }
-  if (near.value > best.value - 0.2) best = near;
+  // By how many standard deviations another offset must be better than the expected one.
+  constexpr double clearly = 4.0;
+  const double independent = std::min(a.independent(change_s), b.independent(change_s));
+  if (fisher(best.value) - fisher(near.value) < clearly * std::sqrt(2.0 / independent)) best = near;
   // The top of a parabola through three points.
   const double before = product(a, b, best.lag - 1) / norm,
                after = product(a, b, best.lag + 1) / norm;
@@ -86,12 +98,25 @@ Alignment align_changes(const Signal& first,
   Alignment found;
   found.offset_s = offset_of(static_cast<double>(best.lag) + top);
   found.correlation = best.value;
-  found.common_s = std::min(first.time_s.back(), second.time_s.back() - found.offset_s) -
-                   std::max(first.time_s.front(), second.time_s.front() - found.offset_s);
+  // What the signals do not share moves the top by its slope over the top's curvature.
+  const double curvature = std::max(0.0, -bend) / square(step_s);
+  const double unshared = std::max(0.0, 1.0 - square(best.value));
+  found.std_s = std::sqrt(unshared / (independent * std::max(best.value * curvature, 1e-6)));
   return found;
 }
 
 }  // namespace
+
+Signal log_speed(const Signal& speed) {
+  constexpr double floor = 0.03;  // of the root mean square
+  double power = 0.0;
+  for (const double value : speed.values) power += square(value);
+  const double usual = std::sqrt(power / static_cast<double>(speed.values.size()));
+  Signal logarithm = speed;
+  if (usual > 0.0)
+    for (double& value : logarithm.values) value = std::log(floor + std::abs(value) / usual);
+  return logarithm;
+}
 
 Alignment align(const Signal& first, const Signal& second, std::optional<double> expected_s) {
   return align_changes(first, second, wheel_change_s, expected_s);

@@ -16,14 +16,18 @@ struct Signal {
 
 struct Alignment {
   double offset_s = 0.0;     ///< second clock's reading minus the first's
+  double std_s = 0.0;        ///< of the offset, from the changes that the signals do not share
   double correlation = 0.0;  ///< of the signals' changes over one second, at the best offset
-  double common_s = 0.0;     ///< duration that both recordings cover
 };
 
-/// The offset at which the changes of two signals correlate best, to a tenth of a second or better.
+/// The logarithm of a wheel's speed, with a floor: its changes are largest where the vehicle starts
+/// and stops, which both of its sides do at the same time, unlike changes of speed in a turn.
+[[nodiscard]] Signal log_speed(const Signal& speed);
+
+/// The offset at which the changes of two signals correlate best.
 /// Outside its recording a signal is constant: vehicles are mostly recorded from rest to rest.
-/// With `expected_s`, offsets within half a second of it are preferred unless another one
-/// correlates better by 0.2.
+/// With `expected_s`, offsets within half a second of it are preferred unless the correlation at
+/// another one is significantly larger. Source: R. A. Fisher, Metron 1 (1921) 3, for artanh(r).
 /// Cost: O(n²) with n at most 8000 points.
 [[nodiscard]] Alignment align(const Signal& first,
                               const Signal& second,

@@ -36,6 +36,9 @@ void add_yaw(const Trace& trace, double offset_s, std::size_t gyro, std::vector<
     const double t = epoch.time_s + offset_s;
     if (t < trace.time_s.front() || t > trace.time_s.back()) continue;
     epoch.yaw_rad[gyro] = at_time(trace.time_s, trace.yaw_rad, t) - first;
+    epoch.yaw_rate_radps[gyro] = (at_time(trace.time_s, trace.yaw_rad, t + step_s) -
+                                  at_time(trace.time_s, trace.yaw_rad, t - step_s)) /
+                                 (2.0 * step_s);
   }
 }
 

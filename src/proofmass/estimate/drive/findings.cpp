@@ -15,15 +15,20 @@ constexpr double bent_position_rad = 0.3;
 // The errors of the angles are correlated over some samples, as quantisation is; the filter takes
 // them as white, and the offsets of the clocks as more precise than a fraction of a sample.
 constexpr double least_clock_std_s = 0.003;
+// Between the two sides where nothing else measures turns: a turn may explain any offset but that
+// of a start or stop, which is known to an epoch of 0.1 s.
+constexpr double opposite_clock_std_s = 0.03;
 
 Uncertain state(const Gaussian<at::states>& x, int index) {
   return {x.mean(index), std::sqrt(std::max(0.0, x.cov(index, index)))};
 }
 
-std::optional<Uncertain> clock_offset(const Gaussian<at::states>& end, int clock) {
+std::optional<Uncertain> clock_offset(const Gaussian<at::states>& end,
+                                      int clock,
+                                      double least_std_s = least_clock_std_s) {
   if (clock == 0) return Uncertain{};
   const Uncertain offset = state(end, at::clock + clock);
-  return Uncertain{offset.value, std::hypot(offset.std, least_clock_std_s)};
+  return Uncertain{offset.value, std::hypot(offset.std, least_std_s)};
 }
 
 void add_series(const Fitted& fitted, const std::vector<Epoch>& epochs, DriveSeries& out) {
@@ -60,7 +65,9 @@ void add_wheels(const Recorded& recorded,
     fit.turns = trace.turns;
     fit.has_yaw = !trace.yaw_rad.empty();
     fit.spin_tilt_rad = trace.spin_tilt_rad;
-    fit.clock_offset_s = clock_offset(end, vehicle.clock[i]);
+    const bool opposite = vehicle.side[i] != vehicle.side[0];
+    fit.clock_offset_s = clock_offset(
+        end, vehicle.clock[i], opposite && !known.yaw ? opposite_clock_std_s : least_clock_std_s);
     if (!known.scale) continue;
     const Uncertain rho = state(end, at::radius + index);
     const double circumference_m = rad_per_turn * vehicle.radius_m[i] * std::exp(rho.value);

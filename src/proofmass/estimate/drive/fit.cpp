@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "proofmass/core/statistics.hpp"
 
@@ -14,9 +15,10 @@ using State = Mat<at::states>;
 
 constexpr double gyro_scale_std = 0.015;  // of MEMS gyroscopes as delivered
 constexpr double steer_start_std_rad = 0.5, least_start_std_rad = 0.003;
-constexpr int relinearisations = 4;
+constexpr int relinearisations = 4, most_relinearisations = 10;
 constexpr double loose = 100.0, steering_psd = 0.1;
-constexpr double course_std_rad = 0.3;
+// Of the first path by the course of fixes: their direction, and relative ones.
+constexpr double course_std_rad = 0.3, first_radius_std = 0.02, first_track_std = 0.05;
 // Fixes are averaged over this time, in which a receiver's noise is correlated. Over longer times
 // the wander averages, too: of one of 25 s, averages over 5 s hide a third of its steps.
 constexpr double normal_point_s = 1.0;
@@ -108,35 +110,55 @@ Chart chart_of(const std::vector<Epoch>& epochs, const std::vector<State>& path)
   return chart;
 }
 
+// Mean square of the second differences of an angle, as the density of a random walk of its rate.
+struct RateWalk {
+  double sum = 0.0, count = 0.0;
+
+  void add(double second_difference, double step_s) {
+    if (std::isnan(second_difference)) return;
+    sum += square(second_difference / step_s) / step_s;
+    count += 1.0;
+  }
+  [[nodiscard]] double psd() const { return count > 0.0 ? sum / count : 0.0; }
+};
+
+// The first wheels of the left and of the right of an axle, whose difference is the yaw.
+std::optional<std::array<std::size_t, 2>> opposite_wheels(const Vehicle& vehicle) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(vehicle.wheels); ++i)
+    for (std::size_t j = 0; j < static_cast<std::size_t>(vehicle.wheels); ++j)
+      if (vehicle.side[i] > 0.0 && vehicle.side[j] < 0.0 &&
+          vehicle.steered[i] == vehicle.steered[j])
+        return std::array{i, j};
+  return std::nullopt;
+}
+
 // Densities of the random walks of speed and yaw rate: those of the changes that the recordings
 // show, times `loose`. A density that fits the changes makes their size at the nominal scale the
 // most probable one, and so has a say in the scale; the measurements are precise enough to need no
 // smoothing. Where nothing measures turns, the yaw rate has the density of a car's steering.
-void set_motion_noise(const std::vector<Epoch>& epochs, const Vehicle& vehicle, Noise& noise) {
-  double speed2 = 0.0, rate2 = 0.0, speeds = 0.0, rates = 0.0;
+void set_motion_noise(const std::vector<Epoch>& epochs, const Setting& setting, Noise& noise) {
+  const Vehicle& vehicle = setting.vehicle;
+  const auto opposite = opposite_wheels(vehicle);
+  RateWalk speed, rate, difference;
   for (std::size_t k = 2; k < epochs.size(); ++k) {
     const double h = epochs[k].dt_s;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(vehicle.wheels); ++i) {
-      const double jump =
-          epochs[k].angle_rad[i] - 2.0 * epochs[k - 1].angle_rad[i] + epochs[k - 2].angle_rad[i];
-      if (std::isnan(jump)) continue;
-      speed2 += square(jump * vehicle.radius_m[i] / h) / h;
-      speeds += 1.0;
-    }
-    for (std::size_t j = 0; j < most_drive_wheels + 1; ++j) {
-      const double jump =
-          epochs[k].yaw_rad[j] - 2.0 * epochs[k - 1].yaw_rad[j] + epochs[k - 2].yaw_rad[j];
-      if (std::isnan(jump)) continue;
-      rate2 += square(jump / h) / h;
-      rates += 1.0;
-    }
+    const auto bend = [&](const auto& of) {
+      return of(epochs[k]) - 2.0 * of(epochs[k - 1]) + of(epochs[k - 2]);
+    };
+    const auto rolled = [&](std::size_t i) {
+      return bend([i](const Epoch& epoch) { return epoch.angle_rad[i]; }) * vehicle.radius_m[i];
+    };
+    for (std::size_t i = 0; i < static_cast<std::size_t>(vehicle.wheels); ++i)
+      speed.add(rolled(i), h);
+    for (std::size_t j = 0; j < most_drive_wheels + 1; ++j)
+      rate.add(bend([j](const Epoch& epoch) { return epoch.yaw_rad[j]; }), h);
+    if (opposite)
+      difference.add((rolled((*opposite)[1]) - rolled((*opposite)[0])) / setting.track_m.value, h);
   }
-  if (speeds > 0.0) noise.speed_psd = loose * std::max(0.05, speed2 / speeds);
-  const bool both_sides = std::ranges::find(vehicle.side, 1.0) != vehicle.side.end() &&
-                          std::ranges::find(vehicle.side, -1.0) != vehicle.side.end();
-  noise.rate_psd = rates > 0.0  ? loose * std::max(0.01, rate2 / rates)
-                   : both_sides ? loose * steering_psd
-                                : steering_psd;
+  if (speed.count > 0.0) noise.speed_psd = loose * std::max(0.05, speed.psd());
+  noise.rate_psd = rate.count > 0.0 ? loose * std::max(0.01, rate.psd())
+                   : opposite       ? loose * std::max(steering_psd, difference.psd())
+                                    : steering_psd;
 }
 
 // The noise parameters whose probability given the recordings is highest, on a logarithmic grid
@@ -220,17 +242,58 @@ void set_in_path(const Gaussian<at::states>& prior, std::vector<State>& path) {
   for (State& x : path) x.segment<3>(at::bearing) = prior.mean.segment<3>(at::bearing);
 }
 
+// Track width from the yaw that the course of the fixes shows (as the frame's) and the difference
+// of two opposite wheels, by regression on the difference, whose noise is far smaller.
+std::optional<double> track_by_course(const std::vector<Epoch>& epochs, const Vehicle& vehicle) {
+  constexpr std::size_t window = 20;
+  const auto opposite = opposite_wheels(vehicle);
+  if (!opposite) return std::nullopt;
+  const auto [left, right] = *opposite;
+  double difference2 = 0.0, product = 0.0;
+  for (std::size_t k = window; k < epochs.size(); ++k) {
+    const Epoch &from = epochs[k - window], &to = epochs[k];
+    const double difference =
+        (to.angle_rad[right] - from.angle_rad[right]) * vehicle.radius_m[right] -
+        (to.angle_rad[left] - from.angle_rad[left]) * vehicle.radius_m[left];
+    const double turn = to.yaw_rad[most_drive_wheels] - from.yaw_rad[most_drive_wheels];
+    if (std::isnan(difference) || std::isnan(turn)) continue;
+    difference2 += square(difference);
+    product += difference * turn;
+  }
+  return product > 0.0 ? std::optional(difference2 / product) : std::nullopt;
+}
+
 // The first path, without the fixes' positions. Where nothing else measures turns, their course is
-// that of the frame: the filter is linearised about this path, and a wrong one would not converge.
+// that of the frame. The filter is linearised about this path, and a wrong one would not converge:
+// neither would products of a widely open track width or scale with the motion.
 Pass first_pass(const Model& model, const Gaussian<at::states>& prior, bool use_course) {
   if (!use_course) return run(model, prior, {}, true);
   std::vector<Epoch> epochs = *model.epochs;
   add_course(model.vehicle, epochs);
   Gaussian<at::states> own = prior;
+  const auto narrow = [&own](int state, double std) {
+    own.cov(state, state) = std::min(own.cov(state, state), square(std));
+  };
   own.cov(at::drift + most_wheels, at::drift + most_wheels) = square(course_std_rad);
+  for (int i = 0; i < model.vehicle.wheels; ++i) narrow(at::radius + i, first_radius_std);
+  if (const auto track_m = track_by_course(epochs, model.vehicle);
+      track_m && prior.cov(at::track, at::track) > square(first_track_std * *track_m)) {
+    own.mean(at::track) = *track_m;
+    narrow(at::track, first_track_std * *track_m);
+  }
   Model with_course = model;
   with_course.epochs = &epochs;
   return run(with_course, own, {}, true);
+}
+
+// Whether the end of a path moved by less than a part of its uncertainty.
+bool has_settled(const Gaussian<at::states>& before, const Gaussian<at::states>& now) {
+  constexpr double part = 0.3;
+  return std::ranges::all_of(std::array{at::x, at::y, at::heading, at::path, at::track},
+                             [&](int state) {
+                               const double moved = now.mean(state) - before.mean(state);
+                               return square(moved) <= square(part) * now.cov(state, state);
+                             });
 }
 
 }  // namespace
@@ -244,10 +307,10 @@ Fitted fit_path(const Recorded& recorded,
   vehicle.offset_s = recorded.offset_s;
   std::vector<Epoch> epochs = epochs_of(recorded, vehicle);
   Model model{.epochs = &epochs, .vehicle = vehicle, .noise = {}, .with_fixes = false};
-  set_motion_noise(epochs, vehicle, model.noise);
-  if (effort != Effort::full) {
+  set_motion_noise(epochs, fitted.setting, model.noise);
+  if (effort == Effort::comparison) {
     // A steered wheel's angle is predicted from the yaw rate: walks wider than the motion's would
-    // count against every hypothesis that has one.
+    // count against every hypothesis that has one, by the likelihood.
     model.noise.speed_psd /= loose;
     model.noise.rate_psd /= loose;
   }
@@ -261,15 +324,17 @@ Fitted fit_path(const Recorded& recorded,
   }
   const int passes = effort == Effort::quick_comparison ? 2 : relinearisations;
   model.comparing = effort != Effort::full;
-  for (int i = 0; i < passes; ++i) {
-    if (progress) progress("path", static_cast<double>(i) / passes);
+  for (int i = 0; i < passes || (effort == Effort::full && !fitted.converged); ++i) {
+    if (i == most_relinearisations) break;
+    if (progress) progress("path", std::min(1.0, static_cast<double>(i) / passes));
     if (recorded.fixes) form_normal_points(vehicle, fitted.pass.path, normal_point_s, epochs);
     if (i == 1 && effort != Effort::quick_comparison)
       NoiseSearch(model, prior, fitted.pass.path).search();
     for (const int s : {at::wander, at::wander + 1})
       if (model.with_fixes) prior.cov(s, s) = square(model.noise.wander_std_m);
+    const Gaussian<at::states> before = fitted.pass.end;
     fitted.pass = run(model, prior, fitted.pass.path, true);
-    if (i + 1 == passes) break;
+    fitted.converged = has_settled(before, fitted.pass.end);
     for (std::size_t c = 1; c < most_clocks; ++c)
       vehicle.offset_s[c] = fitted.pass.end.mean(at::clock + static_cast<int>(c));
     epochs = epochs_of(recorded, vehicle);

@@ -17,10 +17,10 @@ struct Recorded {
   std::optional<Trace> frame;
   std::optional<LocalFixes> fixes;  ///< stamps in seconds of their clock
   std::array<double, most_clocks> offset_s{}, offset_std_s{};
-  [[nodiscard]] bool has_yaw() const {
-    return frame.has_value() ||
-           std::ranges::any_of(wheels, [](const Trace& trace) { return !trace.yaw_rad.empty(); });
+  [[nodiscard]] bool wheels_have_yaw() const {
+    return std::ranges::any_of(wheels, [](const Trace& trace) { return !trace.yaw_rad.empty(); });
   }
+  [[nodiscard]] bool has_yaw() const { return frame.has_value() || wheels_have_yaw(); }
   double start_s = 0.0, end_s = 0.0;  ///< common to all wheels, on the first wheel's clock
 };
 
@@ -35,10 +35,12 @@ struct Fitted {
   Setting setting;
   Noise noise;
   Pass pass;
+  bool converged = false;  ///< the last linearisation about the path did not move its end
 };
 
 /// How much is spent on a path: enough to compare hypotheses on which wheels steer, with the usual
-/// noise parameters or those that the recordings make most probable, or the path to be reported.
+/// noise parameters (by Pass::chi2) or those that the recordings make most probable (by the
+/// likelihood), or the path to be reported.
 enum class Effort { quick_comparison, comparison, full };
 
 /// Path by filter and relinearised smoother.

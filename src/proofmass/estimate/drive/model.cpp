@@ -151,9 +151,9 @@ void Model::measure_yaw(const State& x, const Epoch& now, Rows& out) const {
     if (steered && now.turns) wheel = rolling(x, vehicle.side[n], true);
     const int clock = vehicle.clock[n];
     const double lead_s = x(at::clock + clock) - vehicle.offset_s[static_cast<std::size_t>(clock)];
-    const double seen = x(at::heading) + wheel.steer - x(at::rate) * lead_s;
+    const double seen = x(at::heading) + wheel.steer;
     row.value = now.yaw_rad[n];
-    row.predicted = gain * seen + x(at::drift + j);
+    row.predicted = gain * seen + x(at::drift + j) - now.yaw_rate_radps[n] * lead_s;
     const bool as_steered = steered || (comparing && j < most_wheels);
     row.variance = square(as_steered        ? (now.turns ? steer_std_rad : parked_steer_std_rad)
                           : j < most_wheels ? wheel_yaw_std_rad
@@ -161,7 +161,7 @@ void Model::measure_yaw(const State& x, const Epoch& now, Rows& out) const {
     row.h(at::heading) = gain;
     row.h(at::yaw_scale + j) = seen;
     row.h(at::drift + j) = 1.0;
-    row.h(at::clock + clock) = -gain * x(at::rate);
+    row.h(at::clock + clock) = -now.yaw_rate_radps[n];
     for (int i = 0; i < 2; ++i) row.h(at::speed + i) += gain * wheel.by_steer(i);
     row.h(at::track) = gain * wheel.by_steer(2);
     row.h(at::base) = gain * wheel.by_steer(3);
@@ -275,6 +275,7 @@ void run_into(const AnyModel& model,
       const bool of_fix =
           has_fix && i >= step.count - constraints - 2 && i < step.count - constraints;
       if (of_fix && update.used && i == step.count - constraints - 1) ++pass.fixes_used;
+      pass.chi2 += nis;
       if (i < step.count - constraints) {
         pass.nis += nis;
         ++pass.readings;

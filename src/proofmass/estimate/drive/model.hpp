@@ -19,13 +19,17 @@
 //     Sᵢ += h √((v − ω c)² + (ω b)²) · sgn(v − ω c) e^(−ρᵢ) + slip    distance that wheel i rolled,
 //                                                        if its radius were the nominal rᵢ
 //     zᵢ  = Sᵢ / rᵢ − θ̇ᵢ τ                                angle of wheel i, whose clock is τ ahead
-//     z_j = (1 + k_j) (ψ + δ_j) + d_j + b_j t_m           integrated yaw rate of gyroscope j, with
+//     z_j = (1 + k_j) (ψ + δ_j) + d_j + b_j t_m − ψ̇_j τ   integrated yaw rate of gyroscope j, with
 //                                                        t_m the time in motion so far
 //     δ   = atan(ω b / (v − ω c))                         steering angle (0 if unsteered)
 //     z_f = p₀ + R(ψ₀) (p + R(ψ) a) + wander              fix, with the antenna at a
 //
 // Slip is an error of the nominal distance, an angle: as one of the true distance it would be
 // smaller on smaller wheels, and the most probable scale the smallest that the fixes permit.
+//
+// The rates θ̇ᵢ and ψ̇_j that multiply a clock's error are central differences of the measurements:
+// of the estimated rate, the mean over the step before, the noise is that of the measurement
+// itself, and its product with the innovation moves τ.
 //
 // A steered wheel rolls along its own plane, which without slip is the direction in which its
 // contact point moves (Ackermann): its speed needs no measurement of the steering.
@@ -61,7 +65,7 @@ struct Epoch {
   int direction = 0;      ///< +1 forwards, −1 backwards, 0 standing
   bool turns = false;     ///< the vehicle moves fast enough for a steering angle
   std::array<double, most_drive_wheels> angle_rad{}, angle_std_rad{}, angle_rate_radps{};
-  std::array<double, most_drive_wheels + 1> yaw_rad{}, yaw_walk_rad2{};
+  std::array<double, most_drive_wheels + 1> yaw_rad{}, yaw_rate_radps{}, yaw_walk_rad2{};
   double fix_east_m = missing, fix_north_m = missing;
   double fix_variance_m2 = 0.0;  ///< stated by the receiver, else 0
   double fix_after_s = 0.0;      ///< time of the fix, by its clock, minus time_s
@@ -131,6 +135,7 @@ struct Pass {
   /// Covariance of seen() at each epoch.
   std::vector<Mat<seen_states, seen_states>> seen_cov;
   double log_likelihood = 0.0;
+  double chi2 = 0.0;  ///< Σ innovation² / variance, zero-velocity measurements included
   double nis = 0.0;
   std::size_t readings = 0, fixes = 0, fixes_used = 0;
 };
