@@ -13,7 +13,8 @@ namespace {
 
 constexpr double fewest_turns = 5.0, fewest_fixes_a_turn = 48.0;
 constexpr std::size_t most_blocks = 24;
-/// Largest |α|/ω² of a row that is used: beyond, the speed changes too much within the parabolas.
+/// Largest |α|/ω² of a row that is used: beyond, the speed changes too much within a sixth of a
+/// turn.
 constexpr double steepest = 0.5;
 
 Status check_recording(const EncoderRecording& recording) {
@@ -128,7 +129,7 @@ double nonlinearity_shown(const EncoderFit& fit, const encoder::Layout& layout) 
   for (std::size_t axis = 0; axis < layout.axes; ++axis) {
     const Eigen::Index first = layout.axis(axis);
     if (fit.parameters.segment<2>(first + encoder::sin).norm() < 3.0) continue;
-    for (Eigen::Index i = first + encoder::nonlinear; i < first + encoder::nonlinear + 4; ++i)
+    for (Eigen::Index i = first + encoder::nonlinear; i < first + encoder::drift; ++i)
       most = std::max(most, std::abs(fit.parameters(i)) / fit.prior_std(i));
   }
   return most;

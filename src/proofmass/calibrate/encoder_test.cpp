@@ -92,6 +92,25 @@ TEST(Encoder, NamesMissedCountsWithTheirTime) {
   expect_errors(fit, wheel, 1e-3);
 }
 
+// Beside the centripetal force of the lever arm a nonlinearity changes the response to gravity with
+// the speed, as an error once a turn does: it was up to 15 standard deviations off.
+TEST(Encoder, ANonlinearityAtTwoSpeedsIsNotTakenForAnErrorOnceATurn) {
+  SimulatedEncoder wheel;
+  wheel.speed_radps = [](double t) { return 2.0 + 2.5 / (1.0 + std::exp(60.0 - t)); };
+  wheel.sensors = {{0.15, 0.0, 0.3}};
+  wheel.noise_mps2 = 0.005;
+  wheel.square_std = 2e-4;
+  const test::EncoderTruth truth = test::truth_of(wheel);
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    std::mt19937_64 random(seed);
+    const EncoderCalibration fit = calibrate_encoder(test::simulate(wheel, random), {}).value();
+    const EncoderHarmonic& once = fit.harmonics[0];
+    EXPECT_NEAR(once.cos_rad.value, truth.errors[0], 3.5 * once.cos_rad.std) << seed;
+    EXPECT_NEAR(once.sin_rad.value, truth.errors[1], 3.5 * once.sin_rad.std) << seed;
+    EXPECT_LT(once.cos_rad.std, 2e-4) << seed;
+  }
+}
+
 TEST(Encoder, TheNonlinearityOfTheAccelerometersIsInTheInterval) {
   const double small = calibrated(ideal(), {.nonlinearity = 1e-5}).harmonics[0].cos_rad.std;
   const double large = calibrated(ideal(), {.nonlinearity = 1e-3}).harmonics[0].cos_rad.std;

@@ -1,7 +1,7 @@
 #include "proofmass/signal/encoder.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,6 +13,8 @@ namespace proofmass::signal {
 namespace {
 
 constexpr double no_angle = std::numeric_limits<double>::quiet_NaN();
+// Bins of a sixteenth of a turn: motion_at() spreads a step over a twelfth to either side.
+constexpr std::size_t slip_spread = 2;
 constexpr double per_root_12 = 0.28867513459481287;  // standard deviation of a width of 1
 
 /// Fixes of a small interval of angle and time as one: their weighted means.
@@ -40,45 +42,38 @@ std::vector<FixBin> binned(const AngleFixes& fixes) {
   return bins;
 }
 
-struct Parabola {
+/// Angle, speed and acceleration at a bin.
+struct LocalMotion {
   double angle_rad = no_angle, speed_radps = no_angle, accel_radps2 = no_angle;
 };
 
-/// Weighted parabola through the bins [first, last), about the time of bin `at`.
-Parabola parabola_at(const std::vector<FixBin>& bins,
-                     std::size_t first,
-                     std::size_t last,
-                     std::size_t at) {
+/// Weighted polynomial of fourth degree through the bins [first, last), about the time of bin `at`.
+LocalMotion polynomial_at(const std::vector<FixBin>& bins,
+                          std::size_t first,
+                          std::size_t last,
+                          std::size_t at) {
+  constexpr Eigen::Index terms = 5;
   const double span_s =
       std::max(bins[last - 1].time_s - bins[at].time_s, bins[at].time_s - bins[first].time_s);
-  if (!(span_s > 0.0)) return {};
-  std::array<double, 5> s{};
-  std::array<double, 3> y{};
+  if (!(span_s > 0.0) || last - first < terms) return {};
+  Eigen::Matrix<double, terms, terms> normal = Eigen::Matrix<double, terms, terms>::Zero();
+  Eigen::Matrix<double, terms, 1> right = Eigen::Matrix<double, terms, 1>::Zero(), powers;
   for (std::size_t i = first; i < last; ++i) {
     const double x = (bins[i].time_s - bins[at].time_s) / span_s;
-    double power = bins[i].weight;
-    for (std::size_t n = 0; n < 5; ++n, power *= x) {
-      s[n] += power;
-      if (n < 3) y[n] += power * (bins[i].angle_rad - bins[at].angle_rad);
-    }
+    powers << 1.0, x, x * x, x * x * x, x * x * x * x;
+    normal += bins[i].weight * powers * powers.transpose();
+    right += bins[i].weight * (bins[i].angle_rad - bins[at].angle_rad) * powers;
   }
-  // Cramer's rule for the normal equations [s0 s1 s2; s1 s2 s3; s2 s3 s4] c = y.
-  const double m0 = s[2] * s[4] - s[3] * s[3], m1 = s[1] * s[4] - s[2] * s[3],
-               m2 = s[1] * s[3] - s[2] * s[2];
-  const double det = s[0] * m0 - s[1] * m1 + s[2] * m2;
-  if (!(det > 1e-9 * s[0] * s[0] * s[0])) return {};
-  const double c0 = y[0] * m0 - y[1] * m1 + y[2] * m2;
-  const double c1 =
-      -y[0] * m1 + y[1] * (s[0] * s[4] - s[2] * s[2]) - y[2] * (s[0] * s[3] - s[1] * s[2]);
-  const double c2 =
-      y[0] * m2 - y[1] * (s[0] * s[3] - s[1] * s[2]) + y[2] * (s[0] * s[2] - s[1] * s[1]);
-  return {bins[at].angle_rad + c0 / det, c1 / det / span_s, 2.0 * c2 / det / (span_s * span_s)};
+  const Eigen::LDLT<Eigen::Matrix<double, terms, terms>> solver(normal);
+  if (!(solver.rcond() > 1e-9)) return {};
+  const Eigen::Matrix<double, terms, 1> c = solver.solve(right);
+  return {bins[at].angle_rad + c(0), c(1) / span_s, 2.0 * c(2) / (span_s * span_s)};
 }
 
-std::vector<Parabola> parabolas(const std::vector<FixBin>& bins) {
-  constexpr double half_rad = rad_per_turn / 24.0, half_s = 1.0;
-  constexpr std::size_t fewest = 3;  // to either side
-  std::vector<Parabola> out(bins.size());
+std::vector<LocalMotion> local_motions(const std::vector<FixBin>& bins) {
+  constexpr double half_rad = rad_per_turn / 12.0, half_s = 1.0;
+  constexpr std::size_t fewest = 5;  // to either side
+  std::vector<LocalMotion> out(bins.size());
   std::size_t first = 0, last = 0;
   for (std::size_t at = 0; at < bins.size(); ++at) {
     const auto inside = [&](std::size_t i) {
@@ -89,14 +84,14 @@ std::vector<Parabola> parabolas(const std::vector<FixBin>& bins) {
     while (first < at && !inside(first)) ++first;
     last = std::max(last, at + 1);
     while (last < bins.size() && inside(last)) ++last;
-    out[at] = parabola_at(bins, first, last, at);
+    out[at] = polynomial_at(bins, first, last, at);
   }
   return out;
 }
 
 /// Cubic through values and slopes at both ends. Source: C. de Boor, A Practical Guide to Splines
 /// (2001), chapter 4.
-double hermite(double part, double span_s, const Parabola& a, const Parabola& b) {
+double hermite(double part, double span_s, const LocalMotion& a, const LocalMotion& b) {
   const double p2 = part * part, p3 = p2 * part;
   return (2.0 * p3 - 3.0 * p2 + 1.0) * a.angle_rad +
          (p3 - 2.0 * p2 + part) * span_s * a.speed_radps + (3.0 * p2 - 2.0 * p3) * b.angle_rad +
@@ -192,8 +187,8 @@ CountSlip located(const SlipCandidate& found,
     earliest = std::min(earliest, i);
     latest = i;
   }
-  slip.start_s = boundary_s(earliest - std::min<std::size_t>(earliest, 1));
-  slip.end_s = boundary_s(latest + 1);
+  slip.start_s = boundary_s(earliest - std::min(earliest, slip_spread));
+  slip.end_s = boundary_s(latest + slip_spread);
   return slip;
 }
 
@@ -288,7 +283,7 @@ AngleMotion motion_at(const AngleFixes& fixes, View<double> time_s) {
     column->assign(time_s.size(), no_angle);
   const std::vector<FixBin> bins = binned(fixes);
   if (bins.size() < 4) return out;
-  const std::vector<Parabola> curves = parabolas(bins);
+  const std::vector<LocalMotion> curves = local_motions(bins);
   std::size_t at = 0;
   for (std::size_t k = 0; k < time_s.size(); ++k) {
     const double t = time_s[k];
@@ -364,8 +359,9 @@ bool relocate_slips(View<double> time_s,
     const auto after = std::find_if(costs.rbegin(), costs.rend(), alike) - costs.rbegin();
     const std::size_t latest = last - static_cast<std::size_t>(after);
     slip.time_s = 0.5 * (times[to - 1] + times[to]);
-    slip.start_s = times[first + static_cast<std::size_t>(earliest) - 1];
-    slip.end_s = times[latest];
+    const std::size_t before = first + static_cast<std::size_t>(earliest);
+    slip.start_s = times[before - std::min(before, slip_spread)];
+    slip.end_s = times[std::min(latest + slip_spread - 1, times.size() - 1)];
     for (std::size_t j = to; j < now; ++j) r[j] -= size;
     for (std::size_t j = now; j < to; ++j) r[j] += size;
     any_moved = any_moved || to != now;

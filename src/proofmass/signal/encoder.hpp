@@ -54,11 +54,12 @@ struct AngleMotion {
   std::vector<double> angle_rad, speed_radps, accel_radps2;
 };
 
-/// Local parabolas over a twenty-fourth of a turn to either side, or over as many fixes as three
-/// coefficients need, evaluated at bins of a 256th of a turn (at most 0.1 s) and interpolated
-/// between them. NaN outside the fixes. The parabola attenuates an error of n cycles a turn by
-/// 1.7e-5 n⁴. Source: A. Savitzky, M. J. E. Golay, Analytical Chemistry 36 (1964) 1627. Cost:
-/// O(fixes + bins + times).
+/// Local polynomials of fourth degree over a twelfth of a turn to either side (at most 1 s, at
+/// least five fixes), evaluated at bins of a 256th of a turn (at most 0.1 s) and interpolated
+/// between them. NaN outside the fixes. Of a ripple twice a turn the angle has all but 4e-5, speed
+/// and acceleration all but 0.25 %; parabolas over half of that, whose noise is larger, attenuate
+/// both by 2 to 3 %. Source: A. Savitzky, M. J. E. Golay, Analytical Chemistry 36 (1964) 1627.
+/// Cost: O(fixes + bins + times).
 [[nodiscard]] AngleMotion motion_at(const AngleFixes& fixes, View<double> time_s);
 
 /// A lasting difference by whole counts between an encoder and a reference.

@@ -93,8 +93,11 @@ TEST(MotionAt, KeepsARippleTwiceATurn) {
   }
   const std::vector<double> at = times(150, 10.0);
   const AngleMotion motion = motion_at(fixes, at);
-  for (std::size_t k = 20; k < at.size(); ++k)
+  for (std::size_t k = 20; k < at.size(); ++k) {
     EXPECT_NEAR(motion.angle_rad[k], 1.2 * at[k] + 0.01 * std::sin(2.4 * at[k]), 2e-5) << k;
+    EXPECT_NEAR(motion.speed_radps[k] - 1.2, 0.024 * std::cos(2.4 * at[k]), 0.004 * 0.024) << k;
+    EXPECT_NEAR(motion.accel_radps2[k], -0.0576 * std::sin(2.4 * at[k]), 0.004 * 0.0576) << k;
+  }
 }
 
 struct Offsets {

@@ -56,8 +56,9 @@ Eigen::VectorXd priors(const at::Layout& layout,
     const Index first = layout.axis(axis);
     const double response = parameters.segment<2>(first + at::sin).norm();
     const double second = 0.5 * options.nonlinearity * std::max(response, 1e-3);
-    std.segment<2>(first + at::nonlinear).setConstant(second);
-    std.segment<2>(first + at::nonlinear + 2).setConstant(0.5 * second);
+    std.segment<3>(first + at::nonlinear).setConstant(second);
+    std.segment<2>(first + at::nonlinear + 3).setConstant(0.5 * second);
+    std.segment<2>(first + at::nonlinear + 5).setConstant(1.5 * second);
   }
   return std;
 }
@@ -207,6 +208,21 @@ WheelPoint true_point(const Eigen::VectorXd& parameters,
   return {angle, speed, (shown_radps2 - speed * speed * error.curve) / (1.0 + error.slope)};
 }
 
+namespace {
+
+/// Second and third powers of the force in the plane, in units of gravity: cos 2θ, sin 2θ, cos 3θ
+/// and sin 3θ of gravity alone. Beside a centripetal force the others are not constant, and a
+/// nonlinearity is a response to gravity that changes with the speed, as is an error once a turn.
+Eigen::Matrix<double, at::nonlinear_terms, 1> powers_of(double sin, double cos) {
+  const double sin2 = sin * sin, cos2 = cos * cos, excess = sin2 + cos2 - 1.0;
+  Eigen::Matrix<double, at::nonlinear_terms, 1> out;
+  out << cos2 - sin2, 2.0 * sin * cos, excess, cos * (cos2 - 3.0 * sin2), sin * (3.0 * cos2 - sin2),
+      excess * cos, excess * sin;
+  return out;
+}
+
+}  // namespace
+
 AxisPrediction predict_axis(const at::Seen& parameters,
                             const WheelPoint& wheel,
                             double phase,
@@ -235,11 +251,9 @@ AxisPrediction predict_axis(const at::Seen& parameters,
   out.h(own + at::sin) = (1.0 + y) * sin_s + x * cos_s + fx;
   out.h(own + at::cos) = (1.0 + y) * cos_s - x * sin_s + fy;
   out.value = p * out.h(own + at::sin) + q * out.h(own + at::cos);
-  for (const int n : {2, 3}) {
-    const Index at_n = own + at::nonlinear + 2 * (n - 2);
-    out.h(at_n) = std::cos(n * wheel.angle);
-    out.h(at_n + 1) = std::sin(n * wheel.angle);
-  }
+  // Without the tangential part: the noise of α, in the residual as well, would bias them.
+  out.h.segment<at::nonlinear_terms>(own + at::nonlinear) =
+      powers_of(sin_s - share * rx, cos_s - share * ry);
   const auto drift = drift_at(phase);
   for (Index i = 0; i < at::drift_terms; ++i)
     out.h(own + at::drift + i) = drift[static_cast<std::size_t>(i)];

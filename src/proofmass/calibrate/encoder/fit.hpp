@@ -13,7 +13,8 @@ namespace encoder {
 inline constexpr Eigen::Index errors = 0;  // c1 s1 … c4 s4
 inline constexpr Eigen::Index delay = encoder_parameters, runout = delay + 1, common = runout + 4;
 /// Parameters of an axis, relative to axis().
-inline constexpr Eigen::Index sin = 0, cos = 1, nonlinear = 2, drift = 6, drift_terms = 4,
+inline constexpr Eigen::Index sin = 0, cos = 1, nonlinear = 2, nonlinear_terms = 7,
+                              drift = nonlinear + nonlinear_terms, drift_terms = 4,
                               each = drift + drift_terms;
 /// The parameters on which one axis depends: the common ones, its sensor's lever arm, its own.
 inline constexpr Eigen::Index seen = common + 2 + each;

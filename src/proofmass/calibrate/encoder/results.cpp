@@ -26,7 +26,8 @@ Eigen::VectorXd prior_share(const EncoderFit& fit, const std::vector<Index>& of)
 std::vector<Index> nonlinear_ones(const at::Layout& layout) {
   std::vector<Index> out;
   for (std::size_t axis = 0; axis < layout.axes; ++axis)
-    for (Index i = 0; i < 4; ++i) out.push_back(layout.axis(axis) + at::nonlinear + i);
+    for (Index i = 0; i < at::nonlinear_terms; ++i)
+      out.push_back(layout.axis(axis) + at::nonlinear + i);
   return out;
 }
 

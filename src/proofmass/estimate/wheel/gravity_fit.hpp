@@ -24,8 +24,8 @@ using EncoderMotion = Mat<5>;
 /// Largest less smallest angle.
 [[nodiscard]] double range_of(const std::vector<EncoderMotion>& motion);
 
-/// Whether the speed changes little within a parabola of signal::motion_at(), a twelfth of a turn
-/// wide.
+/// Whether the speed changes little within a twelfth of a turn, half of what signal::motion_at()
+/// fits at once.
 [[nodiscard]] bool is_steady(const EncoderMotion& at);
 
 /// Whether nine tenths of the steady rotation are within 5 % of each other in speed.
