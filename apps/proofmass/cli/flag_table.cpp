@@ -30,7 +30,7 @@ std::string plain_type(const CLI::Option& option) {
 // Default value stated in the help: "oadev (default), adev", "(default 16)", "(default: all)".
 std::string default_in(const CLI::Option& option) {
   if (!option.get_default_str().empty()) return option.get_default_str();
-  const std::string help = option.get_description();
+  const std::string& help = option.get_description();
   std::smatch found;
   if (std::regex_search(help, found, std::regex(R"(\(default:? ([^);,]+)\))"))) return found[1];
   if (std::regex_search(help, found, std::regex(R"(([\w./^-]+) \(default\))"))) return found[1];

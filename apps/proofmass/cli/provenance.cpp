@@ -197,7 +197,7 @@ Invocation::Invocation(std::string command,
       sums_(std::make_unique<Sums>()) {
   if (std::ranges::count(files, "-") == 1) sums_->standard_input.emplace();
   sums_->thread =
-      std::jthread([sums = sums_.get(), files = std::move(files)](std::stop_token stop) {
+      std::jthread([sums = sums_.get(), files = std::move(files)](const std::stop_token& stop) {
         // First, since it must be copied while it is read.
         const auto piped = sums->standard_input ? std::optional(sums->standard_input->pass_on(stop))
                                                 : std::nullopt;

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
+#include <utility>
 
 #include "cli/console.hpp"
 #include "cli/exit_status.hpp"
@@ -15,29 +17,31 @@ void refuse_other_flags(const SimulateCommand& command,
   const auto given = [&](std::string_view name, const auto& value) {
     return value && std::ranges::find(also, name) != also.end();
   };
-  const char* flag = !command.rig.empty()                       ? "a description"
-                     : command.rpm                              ? "--rpm"
-                     : command.datasheet_errors                 ? "--datasheet-errors"
-                     : command.positions                        ? "--positions"
-                     : command.dwell_s                          ? "--dwell"
-                     : command.supply_v                         ? "--supply"
-                     : command.session                          ? "--session"
-                     : command.strokes                          ? "--strokes"
-                     : command.repetitions                      ? "--repetitions"
-                     : command.length_m                         ? "--length"
-                     : command.stroke_s                         ? "--stroke-time"
-                     : command.elevation_deg                    ? "--elevation"
-                     : command.gravity_removed                  ? "--gravity-removed"
-                     : command.gyro                             ? "--gyro"
-                     : command.print_config                     ? "--print-config"
-                     : !command.signal.empty()                  ? "--signal"
-                     : given("--duration", command.duration_s)  ? "--duration"
-                     : given("--gravity", command.gravity_mps2) ? "--gravity"
-                     : given("--adc-bits", command.adc_bits)    ? "--adc-bits"
-                                                                : nullptr;
-  if (flag != nullptr)
-    throw Failure(
-        usage, fmt::format("{} is not for --procedure {}: leave it out", flag, command.procedure));
+  const std::array<std::pair<bool, const char*>, 19> flags{{
+      {!command.rig.empty(), "a description"},
+      {command.rpm.has_value(), "--rpm"},
+      {command.datasheet_errors, "--datasheet-errors"},
+      {command.positions.has_value(), "--positions"},
+      {command.dwell_s.has_value(), "--dwell"},
+      {command.supply_v.has_value(), "--supply"},
+      {command.session.has_value(), "--session"},
+      {command.strokes.has_value(), "--strokes"},
+      {command.repetitions.has_value(), "--repetitions"},
+      {command.length_m.has_value(), "--length"},
+      {command.stroke_s.has_value(), "--stroke-time"},
+      {command.elevation_deg.has_value(), "--elevation"},
+      {command.gravity_removed, "--gravity-removed"},
+      {command.gyro, "--gyro"},
+      {command.print_config, "--print-config"},
+      {!command.signal.empty(), "--signal"},
+      {given("--duration", command.duration_s), "--duration"},
+      {given("--gravity", command.gravity_mps2), "--gravity"},
+      {given("--adc-bits", command.adc_bits), "--adc-bits"},
+  }};
+  const auto foreign = std::ranges::find_if(flags, [](const auto& flag) { return flag.first; });
+  if (foreign != flags.end())
+    throw Failure(usage, fmt::format("{} is not for --procedure {}: leave it out", foreign->second,
+                                     command.procedure));
 }
 
 void run_motor(const SimulateCommand& command) {

@@ -15,9 +15,9 @@ namespace proofmass::app {
 namespace {
 
 // Several recordings share the list, so each note is prefixed with its file.
-void keep_notes(const std::string& file, std::vector<Note> more, std::vector<Note>& notes) {
+void keep_notes(const std::string& file, const std::vector<Note>& more, std::vector<Note>& notes) {
   const std::string name = report::file_name(file);
-  for (Note& note : more) {
+  for (const Note& note : more) {
     const bool named = note.text.find(name) != std::string::npos;
     notes.push_back(note.at(named ? "" : name));
   }

@@ -156,7 +156,8 @@ std::optional<Signal> turns_of(const std::vector<DriveWheel>& wheels, const Gath
   return turns;
 }
 
-// Offset of the frame's clock by the turns of the vehicle; a note if it cannot be determined.
+// Offset of the frame's clock by the turns of the vehicle. Errors: not_observable, those of
+// trace_frame.
 Result<Alignment> relate_frame(const DriveFrame& frame,
                                const std::vector<DriveWheel>& wheels,
                                const Gathered& all) {
@@ -412,9 +413,9 @@ Fitted fit_best(const std::vector<DriveWheel>& wheels,
                 const DriveOptions& options,
                 Gathered& all,
                 DriveSolution& solution) {
-  // ln of the likelihood ratio, at the most probable paths where speed and yaw rate are free: the
-  // likelihood itself, an integral over both, has a factor that depends on what they are chosen to
-  // be (here of the unsteered axle), and favours the hypothesis in which the vehicle is slower.
+  // ln of the likelihood ratio, at the most probable paths: the likelihood is an integral over
+  // speed and yaw rate, which are almost free. Its value depends on the point of the vehicle whose
+  // speed is the state, and favours the hypothesis in which that point is slower.
   constexpr double clear = 5.0;
   const std::vector<Steered> choices = assignments(wheels);
   // A single wheel shows only by the fixes' noise that it steers: that noise must be estimated.

@@ -120,7 +120,8 @@ struct DriveSolution {
 /// Robotics and Automation 12 (1996) 869, for the errors of odometry.
 ///
 /// Errors: invalid_argument (no wheel, more than four, a wrong length), those of estimate_wheel,
-/// not_observable (no wheel's angle could be determined, the recordings have no common motion).
+/// not_observable (no wheel's angle could be determined, the recordings have no common motion, the
+/// path does not converge).
 [[nodiscard]] Result<DriveSolution> estimate_drive(const std::vector<DriveWheel>& wheels,
                                                    const std::optional<DriveFrame>& frame,
                                                    const std::optional<GnssFixes>& fixes,

@@ -36,7 +36,9 @@ const TunedParameter& find(const Tuning& tuning, const std::string& name) {
   return none;
 }
 
-Result<Tuning> tuned(const std::vector<double>& values, TuneOptions options, double rate_hz = 1.0) {
+Result<Tuning> tuned(const std::vector<double>& values,
+                     const TuneOptions& options,
+                     double rate_hz = 1.0) {
   return tune({{.name = "x", .rate_hz = rate_hz, .segments = {values}}}, options);
 }
 

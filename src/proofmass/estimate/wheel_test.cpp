@@ -24,7 +24,7 @@ WheelSolution solve(const std::vector<WheelSensor>& sensors, const WheelOptions&
 
 /// The defaults with one change.
 template <class Member, class Value>
-WheelOptions with(Member member, Value value) {
+WheelOptions with(Member member, const Value& value) {
   WheelOptions options;
   options.*member = value;
   return options;

@@ -1,5 +1,6 @@
 #include "proofmass/fleet/manifest.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

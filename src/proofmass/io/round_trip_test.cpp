@@ -15,6 +15,9 @@ namespace {
 
 /// A temporary folder, removed after the test.
 class RoundTrip : public testing::Test {
+ public:
+  ~RoundTrip() override { std::filesystem::remove_all(folder_); }
+
  protected:
   RoundTrip() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
@@ -22,7 +25,6 @@ class RoundTrip : public testing::Test {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directory(folder_);
   }
-  ~RoundTrip() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
 

@@ -178,7 +178,7 @@ TEST(Clock, CountsTheLongRunWhereRowsComeInBursts) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> late(0.0, 2e-3);
   for (int k = 0; k < 4000; ++k)
-    stamps.push_back(0.04 * (k / 4) + 2e-3 * (k % 4) + late(random) / 8);
+    stamps.push_back(0.04 * static_cast<double>(k / 4) + 2e-3 * (k % 4) + late(random) / 8);
   const auto read = read_text(table("t (s)", stamps));
   ASSERT_TRUE(read.has_value());
   EXPECT_NEAR(read->time.rate_hz, 100.0, 0.5);
@@ -188,7 +188,7 @@ TEST(Clock, CountsTheLongRunWhereRowsComeInBursts) {
 TEST(Clock, CountsEachStampOfSeveralRows) {
   for (const int rows : {2, 3, 10}) {
     std::vector<double> stamps;
-    for (int k = 0; k < 3000; ++k) stamps.push_back(10.0 * rows * (k / rows));
+    for (int k = 0; k < 3000; ++k) stamps.push_back(10.0 * rows * static_cast<double>(k / rows));
     const auto read = read_text(table("t_ms", stamps));
     ASSERT_TRUE(read.has_value());
     EXPECT_NEAR(read->time.rate_hz, 100.0, 1.0) << rows << notes_of(*read);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "proofmass/core/units.hpp"
+#include "proofmass/report/json.hpp"
 
 namespace proofmass::report {
 namespace {

@@ -52,8 +52,8 @@ class Listener {
 
   /// Rows in 10 ms.
   static std::size_t rows_at_once(double rate_hz, std::size_t channels) {
-    return static_cast<std::size_t>(
-        std::clamp(rate_hz / 100, 1.0, static_cast<double>(most_figures / channels)));
+    const std::size_t most_rows = most_figures / channels;
+    return static_cast<std::size_t>(std::clamp(rate_hz / 100, 1.0, static_cast<double>(most_rows)));
   }
 
   void hand_on(std::size_t rows) {

@@ -35,7 +35,7 @@ std::string iio_reason(long code) {
   return std::string(reason.substr(0, reason.find(" (")));  // without the number
 }
 
-IioContext open_iio_context(std::string uri) {
+IioContext open_iio_context(const std::string& uri) {
   errno = 0;
   return IioContext(iio_create_context_from_uri(uri.c_str()));
 }

@@ -15,7 +15,7 @@ using IioContext = std::unique_ptr<iio_context, CloseIioContext>;
 
 /// Null on failure, with errno set. The text is a copy because libiio 0.24 truncates the port in
 /// place.
-[[nodiscard]] IioContext open_iio_context(std::string uri);
+[[nodiscard]] IioContext open_iio_context(const std::string& uri);
 
 /// The socket of a daemon that died raises SIGPIPE in the thread that writes to it, which would end
 /// the program. If the signal is blocked in the calling thread (which must be ours), the call fails

@@ -100,7 +100,7 @@ bool HttpClient::is_waiting() const {
   return connection_->is_waiting;
 }
 
-void HttpClient::ask(std::string target) {
+void HttpClient::ask(const std::string& target) {
   PM_EXPECTS(!is_waiting());
   auto& request = connection_->request;
   request = {http::verb::get, target, 11};

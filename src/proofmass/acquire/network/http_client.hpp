@@ -34,7 +34,7 @@ class HttpClient {
 
   [[nodiscard]] bool is_waiting() const;
   /// GET of a target such as "/get?a=1". Not while a response is pending.
-  void ask(std::string target);
+  void ask(const std::string& target);
   /// The response, or nullopt if it has not arrived within `patience`: call again.
   /// Errors: device (no such host, refused, connection lost, too slow, too long).
   [[nodiscard]] Result<std::optional<HttpAnswer>> answer(std::chrono::milliseconds patience);

@@ -127,8 +127,8 @@ inline OpenSource open_scripts(std::vector<Script> scripts) {
   };
 }
 
-inline std::vector<Act> arrivals(std::size_t count, Act act = {}) {
-  return std::vector<Act>(count, std::move(act));
+inline std::vector<Act> arrivals(std::size_t count, const Act& act = {}) {
+  return std::vector<Act>(count, act);
 }
 
 /// A temporary folder for a test's files.

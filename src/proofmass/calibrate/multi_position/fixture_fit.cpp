@@ -321,10 +321,7 @@ Result<MultiPosition> calibrate_given(View<Pose> poses,
     fit = fit_given(all, fit.state, noise_dof);
     if (!is_finite(fit)) return contradicted(*given);
   }
-  if (options.keep_suspects) {
-    std::vector<GivenPose> kept = *given;
-    fit = fit_given(kept, fit.state, noise_dof);
-  }
+  if (options.keep_suspects) fit = fit_given(*given, fit.state, noise_dof);
   MultiPosition out = assembled(all, fit, scale, noise_dof > 0.0, options);
   if (options.keep_suspects)
     for (PoseResidual& pose : out.poses) pose.used = true;

@@ -55,7 +55,7 @@ std::vector<NoisePart> noise_of_parts(View<double> series, const NoiseOptions& o
     NoiseAnalysis found = accumulator.finish_spectrum();
     if (found.model.ordinates == 0) continue;
     parts.push_back({static_cast<double>(first) / options.rate_hz,
-                     static_cast<double>(end) / options.rate_hz, std::move(found.model)});
+                     static_cast<double>(end) / options.rate_hz, found.model});
   }
   return parts;
 }

@@ -42,7 +42,7 @@ PresentSum sum_present(const double* values, std::size_t n) {
   for (; k + lanes <= n; k += lanes) {
     Lanes x;
     load(x, values + k);
-    const auto present = x == x;
+    const auto present = x == x;  // NOLINT(misc-redundant-expression): false for NaN
     sums += present ? x : Lanes{};
     counts += present ? Lanes{} + 1.0 : Lanes{};
   }

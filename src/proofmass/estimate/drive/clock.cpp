@@ -57,8 +57,7 @@ double duration(const Signal& signal) {
   return signal.time_s.back() - signal.time_s.front();
 }
 
-// Fisher's transformation of a correlation; of the sampling distribution of n pairs with the
-// variance 1/n.
+// Fisher's transformation of a correlation: over n pairs its sampling variance is about 1/n.
 double fisher(double correlation) {
   constexpr double largest = 0.999999;
   return std::atanh(std::clamp(correlation, -largest, largest));

@@ -42,23 +42,35 @@ void add_yaw(const Trace& trace, double offset_s, std::size_t gyro, std::vector<
   }
 }
 
+// Angular rates of the wheels in the step to an epoch.
+struct StepRates {
+  double sum = 0.0, fastest = 0.0, speed_mps = 0.0;
+};
+
+StepRates rates_of(const Epoch& epoch, const Epoch* before, const Vehicle& vehicle) {
+  StepRates rates;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(vehicle.wheels); ++i) {
+    const double rate = before == nullptr
+                            ? epoch.angle_rate_radps[i]
+                            : (epoch.angle_rad[i] - before->angle_rad[i]) / epoch.dt_s;
+    if (std::isnan(rate)) continue;
+    rates.sum += rate;
+    rates.fastest = std::max(rates.fastest, std::abs(rate));
+    rates.speed_mps += std::abs(rate) * vehicle.radius_m[i] / vehicle.wheels;
+  }
+  return rates;
+}
+
 // Direction of travel in the step to each epoch. Standing wheels add no noise to the yaw.
 void add_direction(const Recorded& recorded, const Vehicle& vehicle, std::vector<Epoch>& epochs) {
-  for (std::size_t k = 0; k < epochs.size(); ++k) {
-    Epoch& epoch = epochs[k];
-    double sum = 0.0, fastest = 0.0, speed_mps = 0.0;
-    for (std::size_t i = 0; i < recorded.wheels.size(); ++i) {
-      const double rate = k == 0 ? epoch.angle_rate_radps[i]
-                                 : (epoch.angle_rad[i] - epochs[k - 1].angle_rad[i]) / epoch.dt_s;
-      if (std::isnan(rate)) continue;
-      sum += rate;
-      fastest = std::max(fastest, std::abs(rate));
-      speed_mps +=
-          std::abs(rate) * vehicle.radius_m[i] / static_cast<double>(recorded.wheels.size());
-    }
-    epoch.direction = fastest < still_radps ? 0 : sum < 0.0 ? -1 : 1;
-    epoch.turns = speed_mps > steering_mps;
-    if (k > 0) epoch.moving_s = epochs[k - 1].moving_s + (epoch.direction == 0 ? 0.0 : epoch.dt_s);
+  const Epoch* before = nullptr;
+  for (Epoch& epoch : epochs) {
+    const StepRates rates = rates_of(epoch, before, vehicle);
+    epoch.direction = rates.fastest < still_radps ? 0 : rates.sum < 0.0 ? -1 : 1;
+    epoch.turns = rates.speed_mps > steering_mps;
+    if (before != nullptr)
+      epoch.moving_s = before->moving_s + (epoch.direction == 0 ? 0.0 : epoch.dt_s);
+    before = &epoch;
     if (epoch.direction == 0) continue;
     for (std::size_t i = 0; i < recorded.wheels.size(); ++i)
       epoch.yaw_walk_rad2[i] = recorded.wheels[i].yaw_walk_rad2ps * epoch.dt_s;

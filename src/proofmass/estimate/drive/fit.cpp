@@ -264,8 +264,9 @@ std::optional<double> track_by_course(const std::vector<Epoch>& epochs, const Ve
 }
 
 // The first path, without the fixes' positions. Where nothing else measures turns, their course is
-// that of the frame. The filter is linearised about this path, and a wrong one would not converge:
-// neither would products of a widely open track width or scale with the motion.
+// that of the frame. The filter is linearised about this path, and would not converge
+// about that of a vehicle of another size: the scale is held at that of the fixes' speed, the track
+// width at that of their course.
 Pass first_pass(const Model& model, const Gaussian<at::states>& prior, bool use_course) {
   if (!use_course) return run(model, prior, {}, true);
   std::vector<Epoch> epochs = *model.epochs;
@@ -324,8 +325,7 @@ Fitted fit_path(const Recorded& recorded,
   }
   const int passes = effort == Effort::quick_comparison ? 2 : relinearisations;
   model.comparing = effort != Effort::full;
-  for (int i = 0; i < passes || (effort == Effort::full && !fitted.converged); ++i) {
-    if (i == most_relinearisations) break;
+  for (int i = 0;; ++i) {
     if (progress) progress("path", std::min(1.0, static_cast<double>(i) / passes));
     if (recorded.fixes) form_normal_points(vehicle, fitted.pass.path, normal_point_s, epochs);
     if (i == 1 && effort != Effort::quick_comparison)
@@ -335,6 +335,8 @@ Fitted fit_path(const Recorded& recorded,
     const Gaussian<at::states> before = fitted.pass.end;
     fitted.pass = run(model, prior, fitted.pass.path, true);
     fitted.converged = has_settled(before, fitted.pass.end);
+    const bool enough = i + 1 >= passes && (effort != Effort::full || fitted.converged);
+    if (enough || i + 1 == most_relinearisations) break;
     for (std::size_t c = 1; c < most_clocks; ++c)
       vehicle.offset_s[c] = fitted.pass.end.mean(at::clock + static_cast<int>(c));
     epochs = epochs_of(recorded, vehicle);

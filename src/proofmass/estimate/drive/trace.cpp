@@ -285,43 +285,64 @@ std::vector<Stretch> rests_of(const Trace& wheel, double least_s) {
   return rests;
 }
 
+namespace {
+
+bool is_resting(const std::vector<Stretch>& rests, double t) {
+  return std::ranges::any_of(
+      rests, [&](const Stretch& rest) { return t >= rest.start_s && t <= rest.end_s; });
+}
+
+bool is_plausible(const Three& force, const Three& rate) {
+  return force.allFinite() && rate.allFinite() && !force.isZero() && force.norm() <= 1e3 &&
+         rate.cwiseAbs().maxCoeff() <= impossible_radps;
+}
+
+// The plausible rows of a frame, and the means of those at rest.
+struct FrameRows {
+  std::vector<std::size_t> rows;
+  Three up = Three::Zero(), bias = Three::Zero();
+  std::size_t still = 0;
+};
+
+FrameRows rows_of_frame(const WheelSensor& sensor, const std::vector<Stretch>& rests) {
+  FrameRows found;
+  for (std::size_t k = 0; k < sensor.time_s.size(); ++k) {
+    const Three force = row(sensor.accel_mps2, k), rate = row(sensor.rate_radps, k);
+    if (!is_plausible(force, rate)) continue;
+    found.rows.push_back(k);
+    if (!is_resting(rests, sensor.time_s[k])) continue;
+    found.up += force;
+    found.bias += rate;
+    ++found.still;
+  }
+  if (found.still > 0) {
+    found.up.normalize();
+    found.bias /= static_cast<double>(found.still);
+  }
+  return found;
+}
+
+}  // namespace
+
 Result<Trace> trace_frame(const WheelSensor& sensor, const std::vector<Stretch>& rests) {
   if (sensor.rate_radps[0].empty())
     return Error{Errc::invalid_argument,
                  sensor.name + ": no gyroscope, which is what a sensor on the frame is for"};
-  const auto resting = [&](double t) {
-    return std::ranges::any_of(
-        rests, [&](const Stretch& rest) { return t >= rest.start_s && t <= rest.end_s; });
-  };
-  Three up = Three::Zero(), bias = Three::Zero();
-  double still = 0.0;
-  std::vector<std::size_t> rows;
-  for (std::size_t k = 0; k < sensor.time_s.size(); ++k) {
-    const Three force = row(sensor.accel_mps2, k), rate = row(sensor.rate_radps, k);
-    if (!force.allFinite() || !rate.allFinite() || force.isZero() || force.norm() > 1e3 ||
-        rate.cwiseAbs().maxCoeff() > impossible_radps)
-      continue;
-    rows.push_back(k);
-    if (!resting(sensor.time_s[k])) continue;
-    up += force;
-    bias += rate;
-    still += 1.0;
-  }
-  if (still < 100.0)
+  const FrameRows frame = rows_of_frame(sensor, rests);
+  constexpr std::size_t fewest_still = 100;
+  if (frame.still < fewest_still)
     return Error{
         Errc::not_observable,
         sensor.name +
             ": the vehicle does not stand long enough to determine the bias of the frame's "
             "gyroscope"};
-  up.normalize();
-  bias /= still;
   Trace trace;
   WalkFromBlocks walk;
   double before = 0.0;
-  for (const std::size_t k : rows) {
+  for (const std::size_t k : frame.rows) {
     const double t = sensor.time_s[k];
-    const double rate = up.dot(row(sensor.rate_radps, k) - bias);
-    const bool stands = resting(t);
+    const double rate = frame.up.dot(row(sensor.rate_radps, k) - frame.bias);
+    const bool stands = is_resting(rests, t);
     const double step_s = trace.time_s.empty() ? 0.0 : t - trace.time_s.back();
     if (!trace.time_s.empty() && step_s <= 0.0) continue;
     if (stands && step_s > 0.0 && step_s < 0.2) walk.add(rate, step_s);

@@ -29,9 +29,8 @@ std::optional<double> profile_limit(const TuneProblem& at_maximum, const Profile
   const double at = std::log(at_maximum.value(side.unknown)), sign = side.upwards ? 1.0 : -1.0;
   double inner = 0.0, inner_root = 0.0, outer = 0.0, outer_root = 0.0;  // outer 0: none yet
   double distance = std::clamp(wanted * side.log_std, 1e-6, 2.0);
-  TuneProblem from = at_maximum;
   for (int k = 0; k < most_steps; ++k) {
-    TuneProblem tried = without(from, side.unknown, std::exp(at + sign * distance));
+    TuneProblem tried = without(at_maximum, side.unknown, std::exp(at + sign * distance));
     const double loss = 2.0 * (best - maximise(tried, false).log_likelihood);
     const double root = std::sqrt(std::max(loss, 0.0));
     if (std::abs(root - wanted) < close_enough * wanted) break;

@@ -222,7 +222,7 @@ TEST(WheelModel, PredictsExactlyWhatTheKinematicsOfAPointSay) {
         mount.scale = {1.0 + x(at + wheel::scale), 1.0 + x(at + wheel::scale + 1)};
         mount.skew_rad = x(at + wheel::skew);
         const auto expected = test::reading(test::force(now, mount, site), mount);
-        const auto row = static_cast<std::size_t>(2 * s);
+        const auto row = 2 * static_cast<std::size_t>(s);
         EXPECT_NEAR(out.rows[row].predicted, expected[0], 1e-11);
         EXPECT_NEAR(out.rows[row + 1].predicted, expected[1], 1e-11);
       }

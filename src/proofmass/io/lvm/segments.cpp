@@ -116,7 +116,7 @@ class Lister {
     return Done{};
   }
 
-  void begin_segment(Segment segment) {
+  void begin_segment(const Segment& segment) {
     ++segments_;
     end_segment();
     current_.clear();

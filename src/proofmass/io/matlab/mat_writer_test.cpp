@@ -22,6 +22,9 @@ namespace {
 
 /// A temporary folder, removed after the test.
 class Writer : public testing::Test {
+ public:
+  ~Writer() override { std::filesystem::remove_all(folder_); }
+
  protected:
   Writer() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
@@ -30,7 +33,6 @@ class Writer : public testing::Test {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directory(folder_);
   }
-  ~Writer() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
   Result<Recording> through(const Recording& recording) const {

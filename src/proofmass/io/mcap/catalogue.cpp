@@ -74,7 +74,7 @@ class Cataloguer {
 
 }  // namespace
 
-Result<Catalogue> read_catalogue(std::shared_ptr<const RandomBytes> bytes) {
+Result<Catalogue> read_catalogue(const std::shared_ptr<const RandomBytes>& bytes) {
   Catalogue out;
   FileWindow window(bytes);
   auto summary = read_summary(window, out.notes);

@@ -37,6 +37,6 @@ struct Catalogue {
 /// of each channel with messages according to the summary; all records without a summary. Schemas
 /// and messages are kept up to 64 MiB in all.
 /// Errors: unreadable, corrupt (damaged before the first record).
-[[nodiscard]] Result<Catalogue> read_catalogue(std::shared_ptr<const RandomBytes> bytes);
+[[nodiscard]] Result<Catalogue> read_catalogue(const std::shared_ptr<const RandomBytes>& bytes);
 
 }  // namespace proofmass::io::mcap

@@ -96,14 +96,14 @@ Fields runs_fields(const ChannelRuns& runs) {
                      [&](const characterise::RunLevel& run) { return level_fields(run, unit); },
                      {.meaning = "by run"});
   std::optional<Fields> warm_up;
-  if (runs.set) {
-    fields.push_back(std::move(levels));
-    warm_up = drift_fields(common_warm_up(runs));
-  }
-  fields.push_back(field::object_or_null(
+  if (runs.set) warm_up = drift_fields(common_warm_up(runs));
+  Field common = field::object_or_null(
       "warm_up", std::move(warm_up),
-      {.meaning = "of the mean over all runs, each less its own level", .why_null = why}));
-  if (!runs.set) fields.push_back(std::move(levels));
+      {.meaning = "of the mean over all runs, each less its own level", .why_null = why});
+  // What was not compared has its levels last.
+  if (!runs.set) std::swap(levels, common);
+  fields.push_back(std::move(levels));
+  fields.push_back(std::move(common));
   return fields;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "proofmass/report/tune/wording.hpp"
 #include "proofmass/report/wording.hpp"
 
 namespace proofmass::report {

@@ -31,7 +31,7 @@ std::string power(const char* base, int exponent) {
   return exponent == 1 ? base : fmt::format("{}^{}", base, exponent);
 }
 
-std::string over_seconds(std::string top, double second_power) {
+std::string over_seconds(const std::string& top, double second_power) {
   const auto whole = static_cast<int>(-second_power);
   return second_power == 0.0 ? top : top + "/" + power("s", whole);
 }

@@ -24,7 +24,7 @@ struct Estimate {
   Series mean, variance;
 };
 
-estimate::LinearRun<1, 1> smoothed_by_the_library(double F, Series z, bool diffuse = false) {
+estimate::LinearRun<1, 1> smoothed_by_the_library(double F, const Series& z, bool diffuse = false) {
   estimate::LinearModel<1, 1, 1> model;
   model.F(0, 0) = F;
   model.Q(0, 0) = q;
