@@ -49,7 +49,8 @@ PyObject* type_of(const app::Failure& failure) {
   return failure.status() == app::bad_device ? exceptions.file : exceptions.error;
 }
 
-void translate(std::exception_ptr thrown) {
+// The signature is pybind11's.
+void translate(std::exception_ptr thrown) {  // NOLINT(performance-unnecessary-value-param)
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const app::Failure& failure) {

@@ -99,7 +99,7 @@ Eigen::VectorXd non_negative_minimiser(const Eigen::MatrixXd& A, const Eigen::Ve
 PositiveFactor::PositiveFactor(const Eigen::MatrixXd& A) {
   PM_EXPECTS(A.rows() == A.cols());
   ScaledProblem problem = scaled(A, Eigen::VectorXd::Zero(A.rows()));
-  L_ = Eigen::LLT<Eigen::MatrixXd>(std::move(problem.A)).matrixLLT();
+  L_ = Eigen::LLT<Eigen::MatrixXd>(problem.A).matrixLLT();
   scale_ = std::move(problem.scale);
 }
 

@@ -187,15 +187,16 @@ void add_alternatives(std::vector<TrackAlternative> alternatives, TrackSolution&
 Result<TrackSolution> track_without_gyro(const TrackSensor& sensor,
                                          TrackSignal signal,
                                          const TrackOptions& options) {
-  auto settled = settle(signal, options);
-  if (!settled) return settled.error();
-  AlongAxis found = std::move(settled->along);
+  auto result = settle(signal, options);
+  if (!result) return result.error();
+  auto settled = std::move(result).value();
+  AlongAxis& found = settled.along;
   TrackSolution solution = described(signal, options);
-  solution.false_rests = settled->belied;
+  solution.false_rests = settled.belied;
   solution.axis = found.axis.direction;
   solution.travel_share = found.axis.share;
   solution.scale_std = scale_std(signal, options, solution);
-  add_alternatives(std::move(settled->alternatives), solution);
+  add_alternatives(std::move(settled.alternatives), solution);
   solution.motion_error = {std::sqrt(found.error.walk_m2ps5), std::sqrt(found.error.jump_m2ps4),
                            std::sqrt(found.error.lean_m2ps3)};
   solution.factor_95 = found.error.factor_95;

@@ -364,7 +364,7 @@ Result<WheelSolution> estimate_wheel(std::vector<WheelSensor> sensors,
     return conclude(pair->singles[0].readings, pair->singles[0].fit, options, std::move(solution));
   if (pair->clocks.offset_s.value != 0.0)
     solution.sensors[1].clock_offset_s = pair->clocks.offset_s;
-  Joint joint = fit_jointly(std::move(sensors), std::move(*pair), options);
+  Joint joint = fit_jointly(std::move(sensors), std::move(pair).value(), options);
   return conclude(joint.readings, std::move(joint.fit), options, std::move(solution));
 }
 

@@ -314,8 +314,10 @@ TEST(TimeBase, DoesNotLetLostRowsMoveTheRateOfStampsThatJitter) {
 TEST(TimeBase, FindsNoGapsBetweenBursts) {
   for (const int rows : {4, 7, 16}) {
     std::vector<std::string> stamps;
-    for (int k = 0; k < 8000; ++k)
-      stamps.push_back(fmt::format("{:.6f}", static_cast<double>(k / rows * rows + rows) / 200.0));
+    for (int k = 0; k < 8000; ++k) {
+      const int burst = k / rows;
+      stamps.push_back(fmt::format("{:.6f}", (burst + 1) * rows / 200.0));
+    }
     const auto read = read_text(table("t_s", stamps));
     ASSERT_TRUE(read.has_value());
     EXPECT_NEAR(read->time.rate_hz, 200.0, 0.01);

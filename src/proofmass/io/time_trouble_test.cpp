@@ -177,8 +177,10 @@ TEST(Clock, CountsTheLongRunWhereRowsComeInBursts) {
   std::vector<double> stamps;
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> late(0.0, 2e-3);
-  for (int k = 0; k < 4000; ++k)
-    stamps.push_back(0.04 * static_cast<double>(k / 4) + 2e-3 * (k % 4) + late(random) / 8);
+  for (int k = 0; k < 4000; ++k) {
+    const int burst = k / 4;
+    stamps.push_back(0.04 * burst + 2e-3 * (k % 4) + late(random) / 8);
+  }
   const auto read = read_text(table("t (s)", stamps));
   ASSERT_TRUE(read.has_value());
   EXPECT_NEAR(read->time.rate_hz, 100.0, 0.5);
@@ -188,7 +190,10 @@ TEST(Clock, CountsTheLongRunWhereRowsComeInBursts) {
 TEST(Clock, CountsEachStampOfSeveralRows) {
   for (const int rows : {2, 3, 10}) {
     std::vector<double> stamps;
-    for (int k = 0; k < 3000; ++k) stamps.push_back(10.0 * rows * static_cast<double>(k / rows));
+    for (int k = 0; k < 3000; ++k) {
+      const int group = k / rows;
+      stamps.push_back(10.0 * rows * group);
+    }
     const auto read = read_text(table("t_ms", stamps));
     ASSERT_TRUE(read.has_value());
     EXPECT_NEAR(read->time.rate_hz, 100.0, 1.0) << rows << notes_of(*read);
@@ -289,8 +294,10 @@ TEST(RunningTimeBase, GivesTheSameHoweverTheRowsAreCut) {
     evidence.stamps = StampColumn{"t_us", *parse_unit("us"), {4'290'967'296, 0}, troubled(random)};
     evidence.samples = evidence.stamps->values.size();
     std::vector<double> counter;
-    for (std::size_t k = 0; k < evidence.samples; ++k)
-      counter.push_back(static_cast<double>(k + 2 * (k / 100)));
+    for (std::size_t k = 0; k < evidence.samples; ++k) {
+      const std::size_t lost = 2 * (k / 100);
+      counter.push_back(static_cast<double>(k + lost));
+    }
     evidence.counter = counter;
     evidence.counter_name = "n";
     RunningTimeBase whole(evidence, {});

@@ -203,7 +203,7 @@ TEST(RemoveWarmUp, BringsTheChannelToMetresPerSecondSquared) {
 }
 
 TEST(RemoveWarmUp, SaysWhyItCannotAndLeavesTheRecordingAlone) {
-  const auto refused = [](DriftModel drift, Recording recording, Triad triad) {
+  const auto refused = [](const DriftModel& drift, Recording recording, const Triad& triad) {
     const Samples before = recording.channels[0].values;
     const Status status = remove_warm_up(drift, triad, {}, recording);
     EXPECT_EQ(recording.channels[0].values, before);

@@ -41,7 +41,7 @@ class Slow final : public LiveAnalysis {
 };
 
 MakeAnalysis slow(std::function<void(std::size_t first)> before) {
-  return [before](const SourceHead&) -> Result<std::unique_ptr<LiveAnalysis>> {
+  return [before = std::move(before)](const SourceHead&) -> Result<std::unique_ptr<LiveAnalysis>> {
     return std::unique_ptr<LiveAnalysis>(std::make_unique<Slow>(before));
   };
 }
