@@ -7,6 +7,10 @@
 namespace proofmass::drive_world::drive_test {
 namespace {
 
+Result<estimate::DriveSolution> solve(const World& world) {
+  return estimate::estimate_drive(world.wheels, world.frame, world.fixes, world.options);
+}
+
 // Yaw rates, track width and the gyroscope's scale by a common factor give the same measurements:
 // only the prior of the gyroscope's scale (1.5 %) determines the track width.
 TEST(Drive, LeavesTheScaleOfTheYawRateToItsPrior) {
@@ -18,8 +22,7 @@ TEST(Drive, LeavesTheScaleOfTheYawRateToItsPrior) {
   double sum = 0.0;
   for (std::uint64_t seed = 9201; seed < 9201 + recordings; ++seed) {
     const World world = make_world(scenario, seed);
-    const auto solved =
-        estimate::estimate_drive(world.wheels, world.frame, world.fixes, world.options);
+    const auto solved = solve(world);
     ASSERT_TRUE(solved.has_value()) << solved.error().message;
     ASSERT_TRUE(solved->track_m.has_value());
     EXPECT_NEAR(solved->track_m->std / world.truth.track_m, 0.015, 0.0005) << seed;
@@ -37,8 +40,7 @@ TEST(Drive, TakesTheWheelsOfOneAxleAsUnsteeredUnlessTheyMeasureIt) {
   scenario.frame = scenario.encoders = scenario.stops = true;
   for (std::uint64_t seed = 9301; seed < 9304; ++seed) {
     const World world = make_world(scenario, seed);
-    const auto solved =
-        estimate::estimate_drive(world.wheels, world.frame, world.fixes, world.options);
+    const auto solved = solve(world);
     ASSERT_TRUE(solved.has_value()) << solved.error().message;
     EXPECT_FALSE(solved->wheelbase_m) << seed;
     const double rolled_m =
@@ -53,8 +55,7 @@ TEST(Drive, FindsTheSteeredAxleByTheWheelsOfTwoAxles) {
   scenario.gyroscopes = scenario.steered_known = false;
   scenario.frame = scenario.encoders = scenario.front_axle = true;
   const World world = make_world(scenario, 9311);
-  const auto solved =
-      estimate::estimate_drive(world.wheels, world.frame, world.fixes, world.options);
+  const auto solved = solve(world);
   ASSERT_TRUE(solved.has_value()) << solved.error().message;
   for (const estimate::DriveWheelFit& wheel : solved->wheels)
     EXPECT_EQ(wheel.steered, wheel.name.starts_with("front")) << wheel.name;
@@ -72,8 +73,7 @@ TEST(Drive, RelatesTheClocksOfTwoSidesByTheirStartsAndStops) {
     // The frame's clock is a third one.
     world.frame->clock = 2;
     for (double& t : world.frame->sensor.time_s) t += 100.0;
-    const auto solved =
-        estimate::estimate_drive(world.wheels, world.frame, world.fixes, world.options);
+    const auto solved = solve(world);
     ASSERT_TRUE(solved.has_value()) << solved.error().message;
     const Uncertain offset = *solved->wheels[1].clock_offset_s;
     EXPECT_NEAR(offset.value, world.truth.clock_offset_s[1], 0.05) << seed;
@@ -91,8 +91,7 @@ TEST(Drive, ConvergesWithFixesAndNoDimensionKnown) {
   scenario.fixes = scenario.encoders = scenario.stops = true;
   for (std::uint64_t seed = 9331; seed < 9337; ++seed) {
     const World world = make_world(scenario, seed);
-    const auto solved =
-        estimate::estimate_drive(world.wheels, world.frame, world.fixes, world.options);
+    const auto solved = solve(world);
     ASSERT_TRUE(solved.has_value()) << solved.error().message;
     EXPECT_NEAR(solved->distance_m->value, world.truth.distance_m, 4.0 * solved->distance_m->std)
         << seed;

@@ -17,7 +17,8 @@ constexpr double gyro_scale_std = 0.015;  // of MEMS gyroscopes as delivered
 constexpr double steer_start_std_rad = 0.5, least_start_std_rad = 0.003;
 constexpr int relinearisations = 4, most_relinearisations = 10;
 constexpr double loose = 100.0, steering_psd = 0.1;
-// Of the first path by the course of fixes: their direction, and relative ones.
+// Priors of the first path, which follows the course of the fixes: standard deviations of the
+// initial direction, and, relative, of the radii and the track width.
 constexpr double course_std_rad = 0.3, first_radius_std = 0.02, first_track_std = 0.05;
 // Fixes are averaged over this time, in which a receiver's noise is correlated. Over longer times
 // the wander averages, too: of one of 25 s, averages over 5 s hide a third of its steps.
