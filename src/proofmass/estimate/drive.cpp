@@ -11,6 +11,7 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/drive/findings.hpp"
 #include "proofmass/estimate/drive/fit.hpp"
+#include "proofmass/estimate/drive/steering.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -22,7 +23,6 @@ constexpr double least_common_s = 3.0;
 constexpr double unknown_radius_m = 0.3;  // with no scale, lengths are in units of this
 // Least standard deviations of offsets found by correlation, before the filter refines them.
 constexpr double wheel_offset_std_s = 0.1, fix_offset_std_s = 0.4;
-constexpr Uncertain usual_track_m{1.2, 0.6}, usual_base_m{2.6, 0.5};
 
 Status check(const std::vector<DriveWheel>& wheels) {
   if (wheels.empty()) return Error{Errc::invalid_argument, "no wheel"};
@@ -333,131 +333,6 @@ Result<Gathered> gather(const std::vector<DriveWheel>& wheels,
   return all;
 }
 
-// Which of the wheels are on the steered axle.
-using Steered = std::array<bool, most_drive_wheels>;
-
-// Every assignment with at most one wheel of a side on either axle that agrees with what is given.
-std::vector<Steered> assignments(const std::vector<DriveWheel>& wheels) {
-  std::vector<Steered> all;
-  for (unsigned bits = 0; bits < 1u << wheels.size(); ++bits) {
-    Steered steered{};
-    std::array<std::array<int, 2>, 2> count{};
-    bool fits = true;
-    for (std::size_t i = 0; i < wheels.size(); ++i) {
-      steered[i] = ((bits >> i) & 1u) != 0;
-      fits = fits && wheels[i].steered.value_or(steered[i]) == steered[i];
-      ++count[wheels[i].side == VehicleSide::left ? 1 : 0][steered[i] ? 1 : 0];
-    }
-    for (const auto& side : count)
-      if (side[1] > 1 || (bits != 0 && side[0] > 1)) fits = false;
-    if (fits) all.push_back(steered);
-  }
-  return all;
-}
-
-std::string names_of(const std::vector<DriveWheel>& wheels, const Steered& steered) {
-  std::string names;
-  for (std::size_t i = 0; i < wheels.size(); ++i)
-    if (steered[i]) names += (names.empty() ? "" : " and ") + wheels[i].sensor.name;
-  return names;
-}
-
-void set_geometry(const std::vector<DriveWheel>& wheels,
-                  const DriveOptions& options,
-                  const Steered& steered,
-                  Setting& setting) {
-  const bool both = std::ranges::any_of(
-      wheels, [&](const DriveWheel& wheel) { return wheel.side != wheels.front().side; });
-  const bool offset = both || options.track_m;
-  setting.vehicle.steered = steered;
-  for (std::size_t i = 0; i < wheels.size(); ++i)
-    setting.vehicle.side[i] = !offset ? 0.0 : wheels[i].side == VehicleSide::left ? 1.0 : -1.0;
-  setting.track_m = !offset ? Uncertain{} : options.track_m.value_or(usual_track_m);
-  const bool any = std::ranges::find(steered, true) != steered.end();
-  setting.base_m = any ? options.wheelbase_m.value_or(usual_base_m) : Uncertain{};
-}
-
-// Wheels whose gyroscopes turned by different angles: one of them steers.
-void warn_of_steering(const std::vector<DriveWheel>& wheels,
-                      const std::vector<Trace>& traces,
-                      DriveSolution& solution) {
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const Trace &a = traces[i], &b = traces[j];
-      if (a.yaw_rad.empty() || b.yaw_rad.empty()) continue;
-      const double first = a.yaw_rad.back() - a.yaw_rad.front();
-      const double second = b.yaw_rad.back() - b.yaw_rad.front();
-      const double span_s = a.time_s.back() - a.time_s.front();
-      const double walk_rad = std::sqrt((a.yaw_walk_rad2ps + b.yaw_walk_rad2ps) * span_s);
-      if (std::abs(first - second) < 0.05 + 0.04 * std::abs(first) + 3.0 * walk_rad) continue;
-      solution.notes.push_back(
-          {Severity::warning,
-           wheels[i].sensor.name + " and " + wheels[j].sensor.name +
-               ": their gyroscopes turned by different angles, as wheels of a steered and of an "
-               "unsteered axle do: state those of the steered axle",
-           {Advice{"front"}}});
-      return;
-    }
-  }
-}
-
-// The wheels of one axle show by a gyroscope of theirs alone whether they steer.
-bool show_steering(const std::vector<DriveWheel>& wheels, const Recorded& recorded) {
-  const auto lefts = std::ranges::count(wheels, VehicleSide::left, &DriveWheel::side);
-  const auto rights = std::ssize(wheels) - lefts;
-  return std::max(lefts, rights) > 1 || recorded.wheels_have_yaw();
-}
-
-// The most probable assignment; the first, all unsteered, unless another is clearly more so.
-Fitted fit_best(const std::vector<DriveWheel>& wheels,
-                const DriveOptions& options,
-                Gathered& all,
-                DriveSolution& solution) {
-  // ln of the likelihood ratio, at the most probable paths: the likelihood is an integral over
-  // speed and yaw rate, which are almost free. Its value depends on the point of the vehicle whose
-  // speed is the state, and favours the hypothesis in which that point is slower.
-  constexpr double clear = 5.0;
-  const std::vector<Steered> choices = assignments(wheels);
-  // A single wheel shows only by the fixes' noise that it steers: that noise must be estimated.
-  const Effort effort = choices.size() <= 2 ? Effort::comparison : Effort::quick_comparison;
-  Steered chosen = choices.front();
-  double first = 0.0, best = -INFINITY;
-  std::vector<double> likelihoods;
-  for (const Steered& steered : choices) {
-    if (choices.size() == 1 || !show_steering(wheels, all.recorded)) break;
-    set_geometry(wheels, options, steered, all.setting);
-    const Pass pass = fit_path(all.recorded, all.setting, effort, {}).pass;
-    const double now = effort == Effort::comparison ? pass.log_likelihood : -0.5 * pass.chi2;
-    if (!std::isfinite(best)) first = now;
-    likelihoods.push_back(now);
-    if (now > best + (std::isfinite(best) ? clear : 0.0)) {
-      best = now;
-      chosen = steered;
-    }
-  }
-  set_geometry(wheels, options, chosen, all.setting);
-  const bool none = std::ranges::find(chosen, true) == chosen.end();
-  if (none && choices.size() > 1) warn_of_steering(wheels, all.recorded.wheels, solution);
-  // A single wheel shows by the fixes alone that it steers, which wander.
-  const bool alike =
-      std::ranges::count_if(likelihoods, [&](double one) { return one > best - clear; }) > 1;
-  if (alike || (wheels.size() == 1 && !likelihoods.empty()))
-    solution.notes.push_back(
-        {Severity::warning,
-         "the motion does not show which wheels are on the steered axle: " +
-             (none ? std::string("all are taken as unsteered")
-                   : names_of(wheels, chosen) + " are taken to be") +
-             ", and the heading is off by the change of the steering angle if they are not; state "
-             "them",
-         {Advice{"front"}}});
-  if (choices.size() > 1 && best > first)
-    solution.notes.push_back(
-        {Severity::info,
-         "the motion shows that " + names_of(wheels, chosen) + " are on the steered axle",
-         {Advice{"front"}}});
-  return fit_path(all.recorded, all.setting, Effort::full, options.progress);
-}
-
 Known known_of(const std::vector<DriveWheel>& wheels,
                const DriveOptions& options,
                const Gathered& all,
@@ -493,7 +368,7 @@ Result<DriveSolution> estimate_drive(const std::vector<DriveWheel>& wheels,
   auto gathered = gather(wheels, frame, fixes, options, solution);
   if (!gathered) return gathered.error();
   Gathered all = std::move(gathered).value();
-  const Fitted fitted = fit_best(wheels, options, all, solution);
+  const Fitted fitted = fit_best(wheels, options, all.recorded, all.setting, solution);
   if (!fitted.converged)
     return Error{
         Errc::not_observable,
