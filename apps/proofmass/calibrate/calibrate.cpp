@@ -262,6 +262,23 @@ void check_by_draws(const CalibrateCommand& command,
     report.why_no_check = check.error().message;
 }
 
+void fill_measurements(const PoseSet& set, report::CalibrateReport& report) {
+  report.files = set.files;
+  report.sensor = set.sensor;
+  report.unit = set.unit;
+  report.pose_file = set.pose_file;
+  report.sample_std = set.sample_std;
+}
+
+// The budget of the certificate has the stability as a further contribution.
+void budget_with_stability(const std::vector<TypeB>& lines, report::CalibrateReport& report) {
+  if (!report.stability) return;
+  std::vector<TypeB> all = lines;
+  for (TypeB& line : calibrate::type_b_of(*report.stability, report.unit.symbol))
+    all.push_back(std::move(line));
+  report.certificate.budgets = calibrate::budget_of(report.fit, all, report.unit.symbol).value();
+}
+
 }  // namespace
 
 void run_calibrate(const CalibrateCommand& given) {
@@ -279,11 +296,7 @@ void run_calibrate(const CalibrateCommand& given) {
     const Status plausible = calibrate::check_acceleration_unit(set.poses, gravity.value);
     if (!plausible) throw Failure(bad_input, plausible.error().at(set.files.front().file));
   }
-  report.files = set.files;
-  report.sensor = set.sensor;
-  report.unit = set.unit;
-  report.pose_file = set.pose_file;
-  report.sample_std = set.sample_std;
+  fill_measurements(set, report);
   const MultiPositionOptions options{
       .model = model_of(command),
       .gravity_mps2 = gravity.value,
@@ -304,12 +317,7 @@ void run_calibrate(const CalibrateCommand& given) {
   report.budgets = std::move(budgets).value();
   report.stability = stability_of(command, set, report.fit);
   fill_certificate(command, gravity, report);
-  if (report.stability) {
-    std::vector<TypeB> all = lines;
-    for (TypeB& line : calibrate::type_b_of(*report.stability, report.unit.symbol))
-      all.push_back(std::move(line));
-    report.certificate.budgets = calibrate::budget_of(report.fit, all, report.unit.symbol).value();
-  }
+  budget_with_stability(lines, report);
   check_by_draws(command, lines, options, set, report);
   const Status added = calibrate::add_type_b(report.fit, lines, report.unit.symbol);
   if (!added) throw Failure(usage, added.error().at("--type-b"));

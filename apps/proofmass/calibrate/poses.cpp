@@ -202,6 +202,30 @@ FilePoses poses_of(const std::string& file,
   return recording_poses(std::move(recording), command, notes);
 }
 
+// Adds one file's positions to those of the files before it.
+void append(FilePoses one, PoseSet& out) {
+  if (!out.files.empty() && one.unit.symbol != out.unit.symbol)
+    throw Failure(usage,
+                  fmt::format("{} is in {}, {} in {}: calibrate them apart", out.files.front().file,
+                              out.unit.symbol, one.file.file, one.unit.symbol));
+  out.noise_dof = out.files.empty() ? one.noise_dof : std::min(out.noise_dof, one.noise_dof);
+  out.unit = one.unit;
+  out.reference_supply_v = one.reference_supply_v;
+  out.sensor = one.sensor;
+  for (std::size_t k = 0; k < 3; ++k)
+    out.sample_std[k] = std::max(out.sample_std[k], one.sample_std[k]);
+  out.pose_file.insert(out.pose_file.end(), one.poses.size(), out.files.size());
+  out.poses.insert(out.poses.end(), one.poses.begin(), one.poses.end());
+  if (one.rates) {
+    one.rates->file = out.files.size();
+    if (!out.rates.empty() && out.rates.front().unit.symbol != one.rates->unit.symbol)
+      throw Failure(usage, "--gyro: the gyroscopes of the files are in different units");
+    out.rates.push_back(std::move(*one.rates));
+  }
+  out.files.push_back(std::move(one.file));
+  if (one.session) out.sessions.push_back(std::move(*one.session));
+}
+
 }  // namespace
 
 PoseSet read_poses(const std::vector<std::string>& files,
@@ -215,27 +239,7 @@ PoseSet read_poses(const std::vector<std::string>& files,
       if (files.size() > 1) note = note.at(file);
       notes.push_back(std::move(note));
     }
-    if (!out.files.empty() && one.unit.symbol != out.unit.symbol) {
-      throw Failure(
-          usage, fmt::format("{} is in {}, {} in {}: calibrate them apart", out.files.front().file,
-                             out.unit.symbol, file, one.unit.symbol));
-    }
-    out.noise_dof = out.files.empty() ? one.noise_dof : std::min(out.noise_dof, one.noise_dof);
-    out.unit = one.unit;
-    out.reference_supply_v = one.reference_supply_v;
-    out.sensor = one.sensor;
-    for (std::size_t k = 0; k < 3; ++k)
-      out.sample_std[k] = std::max(out.sample_std[k], one.sample_std[k]);
-    out.pose_file.insert(out.pose_file.end(), one.poses.size(), out.files.size());
-    out.poses.insert(out.poses.end(), one.poses.begin(), one.poses.end());
-    if (one.rates) {
-      one.rates->file = out.files.size();
-      if (!out.rates.empty() && out.rates.front().unit.symbol != one.rates->unit.symbol)
-        throw Failure(usage, "--gyro: the gyroscopes of the files are in different units");
-      out.rates.push_back(std::move(*one.rates));
-    }
-    out.files.push_back(std::move(one.file));
-    if (one.session) out.sessions.push_back(std::move(*one.session));
+    append(std::move(one), out);
   }
   return out;
 }

@@ -43,20 +43,23 @@ const Replacement* find(const std::array<Replacement, N>& all, std::string_view 
   return found == all.end() ? nullptr : found;
 }
 
+// The code point `letter`, at the beginning of `text`, as it is shown.
+std::string_view plain_letter(std::string_view text, std::string_view letter, bool ascii) {
+  const Replacement* found = find(in_figures, text);
+  if (found == nullptr && ascii) found = find(in_ascii, text);
+  if (found != nullptr) return found->second;
+  return ascii && letter.size() > 1 ? "?" : letter;
+}
+
 std::string plain_cell(std::string_view cell, bool ascii) {
   std::string out;
   while (!cell.empty()) {
-    const Replacement* found = find(in_figures, cell);
-    if (found == nullptr && ascii) found = find(in_ascii, cell);
     std::size_t length = 1;
     while (length < cell.size() && !begins_letter(cell[length])) ++length;
-    if (found != nullptr)
-      out += out.ends_with(' ') && found->second.starts_with(' ') ? found->second.substr(1)
-                                                                  : found->second;
-    else if (ascii && length > 1)
-      out += '?';
-    else
-      out += cell.substr(0, length);
+    const std::string_view letter = cell.substr(0, length);
+    std::string_view shown = plain_letter(cell, letter, ascii);
+    if (shown != letter && out.ends_with(' ') && shown.starts_with(' ')) shown.remove_prefix(1);
+    out += shown;
     cell.remove_prefix(length);
   }
   return out;

@@ -17,6 +17,12 @@ const CLI::Option* option_of(const CLI::App* verb, const std::string& word) {
   return verb == nullptr ? nullptr : verb->get_option_no_throw(word.substr(0, word.find('=')));
 }
 
+// Whether the value of the option is the next word.
+bool takes_next(const CLI::Option* option, const std::string& word) {
+  return option != nullptr && option->get_items_expected_max() > 0 &&
+         word.find('=') == std::string::npos;
+}
+
 }  // namespace
 
 void take_verb_flags(const CLI::App& app, const Verb& fleet, std::vector<std::string>& arguments) {
@@ -32,8 +38,7 @@ void take_verb_flags(const CLI::App& app, const Verb& fleet, std::vector<std::st
     std::vector<std::string>& into = other != nullptr ? flags : kept;
     into.push_back(word);
     const CLI::Option* option = own != nullptr ? own : other;
-    if (option != nullptr && option->get_items_expected_max() > 0 &&
-        word.find('=') == std::string::npos && k + 1 < arguments.size()) {
+    if (takes_next(option, word) && k + 1 < arguments.size()) {
       into.push_back(arguments[++k]);
     } else if (!is_flag) {
       if (is_inside && verb == nullptr) verb = verb_named(app, word);

@@ -73,8 +73,8 @@ bool Run::has_sums(std::size_t group, std::size_t part, const std::string& place
   return of.own_sha256[part].empty() || of.own_sha256[part] == head->sha256;
 }
 
-// Which groups are to be done, and which of their recordings by this shard: every N-th of all.
-void Run::find_groups() {
+// Which groups have recordings for this shard, and which of them: every N-th of all.
+void Run::keep_groups_of_shard() {
   std::size_t number = 0;
   std::vector<Job> jobs;
   for (Job& job : jobs_) {
@@ -89,25 +89,38 @@ void Run::find_groups() {
   }
   jobs_ = std::move(jobs);
   report_.jobs = jobs_.size();
+}
+
+// Only where there is something to compare it with.
+void Run::hash_own_parts(std::size_t group, bool has_entry) {
+  const Job& job = jobs_[group];
+  for (std::size_t part = 0; part < job.parts.size(); ++part)
+    if (groups_[group].is_own[part] && !is_url(job.parts[part]) &&
+        (has_entry || fs::exists(sums_path(job, part, no_place))))
+      groups_[group].own_sha256[part] = sha256_of(job.parts[part]);
+}
+
+// Those of other shards are their concern.
+bool Run::inputs_unchanged(std::size_t group, const fleet::Entry& entry) const {
+  const std::vector<std::string>& parts = jobs_[group].parts;
+  const Group& of = groups_[group];
+  return std::ranges::all_of(entry.inputs, [&](const fleet::InputSum& input) {
+    if (is_url(input.path)) return true;
+    const auto part =
+        static_cast<std::size_t>(std::ranges::find(parts, input.path) - parts.begin());
+    if (part == parts.size()) return input.sha256 == sha256_of(input.path);
+    return !of.is_own[part] || input.sha256 == of.own_sha256[part];
+  });
+}
+
+void Run::find_groups() {
+  keep_groups_of_shard();
   for (std::size_t k = 0; k < jobs_.size() && !interruption_waits(); ++k) {
-    Group& group = groups_[k];
-    const Job& job = jobs_[k];
-    const auto entry = results_.find(job.id());
-    // Only where there is something to compare it with.
-    for (std::size_t part = 0; part < job.parts.size(); ++part)
-      if (group.is_own[part] && !is_url(job.parts[part]) &&
-          (entry || fs::exists(sums_path(job, part, no_place))))
-        group.own_sha256[part] = sha256_of(job.parts[part]);
-    if (!entry || !is_current(job, *entry)) continue;
-    group.is_done = std::ranges::all_of(entry->inputs, [&](const fleet::InputSum& input) {
-      const auto part = std::ranges::find(job.parts, input.path) - job.parts.begin();
-      if (is_url(input.path)) return true;
-      if (static_cast<std::size_t>(part) == job.parts.size())
-        return input.sha256 == sha256_of(input.path);
-      return !group.is_own[static_cast<std::size_t>(part)] ||
-             input.sha256 == group.own_sha256[static_cast<std::size_t>(part)];
-    });
-    if (group.is_done) count_skipped(job, *entry);
+    const auto entry = results_.find(jobs_[k].id());
+    hash_own_parts(k, static_cast<bool>(entry));
+    if (!entry || !is_current(jobs_[k], *entry)) continue;
+    groups_[k].is_done = inputs_unchanged(k, *entry);
+    if (groups_[k].is_done) count_skipped(jobs_[k], *entry);
   }
 }
 

@@ -89,6 +89,9 @@ class Run {
   // Groups (groups.cpp).
   [[nodiscard]] Status run_groups();
   void find_groups();
+  void keep_groups_of_shard();
+  void hash_own_parts(std::size_t group, bool has_entry);
+  [[nodiscard]] bool inputs_unchanged(std::size_t group, const fleet::Entry& entry) const;
   [[nodiscard]] std::string key_of(const fleet::Job& job) const;
   [[nodiscard]] std::string sums_path(const fleet::Job& job,
                                       std::size_t part,

@@ -42,6 +42,16 @@ struct AxisOf {
   std::size_t axis = 3;  // 3: none
 };
 
+// Whether a letter ends a word that names an axis: "x", "gx"; `word` is where that begins.
+bool names_axis(const std::string& text, std::size_t i, std::size_t& word) {
+  if (text[i] < 'x' || text[i] > 'z') return false;
+  if (i + 1 < text.size() && is_letter(text[i + 1])) return false;
+  word = i;
+  while (word > 0 && is_letter(text[word - 1])) --word;
+  const std::string stem = text.substr(word, i - word);
+  return stem.empty() || stem == "a" || stem == "g" || stem == "w" || stem == "f";
+}
+
 // The last x, y or z that is not part of a longer word, once the kind is removed; also "gx", "wx".
 AxisOf axis_of(const std::string& name) {
   std::string text = lower(name);
@@ -50,12 +60,8 @@ AxisOf axis_of(const std::string& name) {
     if (at != std::string::npos) text.replace(at, kind.size(), "?");
   }
   for (std::size_t i = text.size(); i-- > 0;) {
-    if (text[i] < 'x' || text[i] > 'z') continue;
-    if (i + 1 < text.size() && is_letter(text[i + 1])) continue;
     std::size_t word = i;
-    while (word > 0 && is_letter(text[word - 1])) --word;
-    const std::string stem = text.substr(word, i - word);
-    if (!stem.empty() && stem != "a" && stem != "g" && stem != "w" && stem != "f") continue;
+    if (!names_axis(text, i, word)) continue;
     const auto axis = static_cast<std::size_t>(text[i] - 'x');
     std::string sensor = text.substr(0, word) + text.substr(i + 1);
     std::erase_if(sensor, [](char c) { return c == '?' || c == '_' || c == ' ' || c == '.'; });

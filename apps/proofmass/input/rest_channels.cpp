@@ -175,6 +175,21 @@ report::RestShare share_of(const signal::RestSearch& search,
   return found;
 }
 
+// The next channels, from k on, that move together: up to three axes of one sensor.
+std::vector<RestChannel*> moving_group(const std::vector<RestChannel*>& channels, std::size_t& k) {
+  constexpr std::size_t most_axes = 3;
+  // fewer samples do not determine the noise at rest
+  constexpr std::size_t fewest_samples = 500;
+  std::vector<RestChannel*> group;
+  for (; k < channels.size() && group.size() < most_axes; ++k) {
+    RestChannel& channel = *channels[k];
+    if (!shows_motion(channel) || channel.series.size() < fewest_samples) continue;
+    if (!group.empty() && !moves_with(channel, *group.front())) break;
+    group.push_back(&channel);
+  }
+  return group;
+}
+
 }  // namespace
 
 double first_used_s(const InputFlags& input) {
@@ -189,20 +204,11 @@ std::vector<RestChannel*> pointers_to(std::vector<RestChannel>& channels) {
 }
 
 void find_share_at_rest(double start_s, const std::vector<RestChannel*>& channels) {
-  constexpr std::size_t most_axes = 3;
-  // fewer samples do not determine the noise at rest
-  constexpr std::size_t fewest_samples = 500;
   for (std::size_t k = 0; k < channels.size();) {
-    std::vector<View<double>> axes;
-    std::vector<RestChannel*> group;
-    for (; k < channels.size() && group.size() < most_axes; ++k) {
-      RestChannel& channel = *channels[k];
-      if (!shows_motion(channel) || channel.series.size() < fewest_samples) continue;
-      if (!group.empty() && !moves_with(channel, *group.front())) break;
-      axes.emplace_back(channel.series);
-      group.push_back(&channel);
-    }
+    const std::vector<RestChannel*> group = moving_group(channels, k);
     if (group.empty()) continue;
+    std::vector<View<double>> axes;
+    for (const RestChannel* channel : group) axes.emplace_back(channel->series);
     const double rate_hz = group.front()->rate_hz;
     const signal::RestSearch search = signal::find_rests(axes, {.rate_hz = rate_hz});
     if (search.window == 0) continue;

@@ -101,6 +101,41 @@ estimate::WheelSensor wheel_sensor(const Recording& recording,
   return sensor;
 }
 
+namespace {
+
+std::vector<Recording> load_timed(const std::vector<std::string>& files,
+                                  const InputFlags& flags,
+                                  const OutputFlags& output) {
+  std::vector<Recording> recordings;
+  for (const std::string& file : files) {
+    recordings.push_back(load(file, flags, progress_bar(output)));
+    if (recordings.back().time.source == TimeSource::none)
+      throw Failure(usage, file + ": no time column and no --rate: give --rate HZ or --time NAME");
+  }
+  return recordings;
+}
+
+std::vector<Accelerometer> one_or_two_accelerometers(const std::vector<Recording>& recordings) {
+  std::vector<Accelerometer> found = accelerometers(recordings);
+  if (found.size() <= 2) return found;
+  std::string names;
+  for (const Accelerometer& one : found) names += (names.empty() ? "" : ", ") + one.name;
+  throw Failure(usage,
+                fmt::format("{} accelerometers ({}), expected one or two: choose with --channel",
+                            found.size(), names));
+}
+
+// Start of each recording: after the first one's, if they share a clock.
+std::vector<double> starts_s(const std::vector<Recording>& recordings, bool clocks_shared) {
+  std::vector<double> starts(recordings.size(), 0.0);
+  if (recordings.size() != 2 || !clocks_shared) return starts;
+  const auto &a = recordings[0].time.start_ns, &b = recordings[1].time.start_ns;
+  const std::int64_t first = std::min(*a, *b);
+  return {static_cast<double>(*a - first) * s_per_ns, static_cast<double>(*b - first) * s_per_ns};
+}
+
+}  // namespace
+
 WheelInput wheel_input(const std::vector<std::string>& files,
                        const InputFlags& all_flags,
                        const GyroscopeUse& gyroscope,
@@ -109,36 +144,19 @@ WheelInput wheel_input(const std::vector<std::string>& files,
   InputFlags flags = all_flags;
   if (encoder.wanted) read_encoder_too(encoder, flags);
   WheelInput input;
-  std::vector<Recording> recordings;
-  for (const std::string& file : files) {
-    recordings.push_back(load(file, flags, progress_bar(output)));
-    if (recordings.back().time.source == TimeSource::none) {
-      throw Failure(usage, file + ": no time column and no --rate: give --rate HZ or --time NAME");
-    }
-  }
+  std::vector<Recording> recordings = load_timed(files, flags, output);
   const auto models = load_sensors(flags, input.notes);
-  const std::vector<Accelerometer> found = accelerometers(recordings);
-  if (found.size() > 2) {
-    std::string names;
-    for (const Accelerometer& one : found) names += (names.empty() ? "" : ", ") + one.name;
-    throw Failure(usage,
-                  fmt::format("{} accelerometers ({}), expected one or two: choose with --channel",
-                              found.size(), names));
-  }
+  const std::vector<Accelerometer> found = one_or_two_accelerometers(recordings);
   calibrate(models, found, recordings);
   remove_warm_up(flags, models, found, recordings, input.notes);
   keep_notes(recordings, input.notes);
   input.clocks_shared =
       recordings.size() == 1 || share_a_clock(recordings.front(), recordings.back());
+  const std::vector<double> begins_s = starts_s(recordings, input.clocks_shared);
   GyroscopeUse use = gyroscope;
   for (const Accelerometer& one : found) {
     const Recording& recording = recordings[one.recording];
-    double begin_s = 0.0;
-    if (recordings.size() == 2 && input.clocks_shared) {
-      const std::int64_t first =
-          std::min(*recordings[0].time.start_ns, *recordings[1].time.start_ns);
-      begin_s = static_cast<double>(*recording.time.start_ns - first) * s_per_ns;
-    }
+    const double begin_s = begins_s[one.recording];
     input.sensors.push_back(wheel_sensor(
         recording, one, begin_s, use, sensor_model_of(models, input.sensors.size()), input.notes));
     if (recordings.size() == 1 && !input.sensors.back().rate_radps[0].empty())

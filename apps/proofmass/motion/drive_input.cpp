@@ -194,6 +194,29 @@ const Channel* accuracy_of(const Recording& recording) {
   return nullptr;
 }
 
+// Channels of a recording of positions; accuracy and quality are null without them.
+struct PositionChannels {
+  const Channel *lat, *lon, *accuracy, *quality;
+};
+
+std::optional<estimate::GnssFix> fix_at(const Recording& recording,
+                                        const PositionChannels& from,
+                                        std::size_t k) {
+  estimate::GnssFix fix{.time_s = recording.time.at(k),
+                        .latitude_rad = radians(*from.lat, k),
+                        .longitude_rad = radians(*from.lon, k)};
+  const bool valid = std::abs(fix.latitude_rad) <= rad_per_turn / 4.0 &&
+                     std::abs(fix.longitude_rad) <= rad_per_turn &&
+                     (fix.latitude_rad != 0.0 || fix.longitude_rad != 0.0) &&
+                     (from.quality == nullptr || from.quality->values[k] > 0.0);
+  if (!valid) return std::nullopt;
+  if (from.accuracy != nullptr && from.accuracy->values[k] > 0.0)
+    fix.std_m = from.accuracy->unit.quantity == Quantity::length
+                    ? from.accuracy->unit.si(from.accuracy->values[k])
+                    : from.accuracy->values[k];
+  return fix;
+}
+
 // Fixes of valid rows; a fix that repeats the previous row's is the same fix.
 estimate::GnssFixes position_fixes(const std::string& file,
                                    const InputFlags& flags,
@@ -202,35 +225,21 @@ estimate::GnssFixes position_fixes(const std::string& file,
   InputFlags own;
   own.host = flags.host;
   const Recording recording = with_time(file, own, output);
-  const Channel *lat = channel_of(recording, "lat"), *lon = channel_of(recording, "lon");
-  if (lat == nullptr || lon == nullptr)
+  const PositionChannels from{channel_of(recording, "lat"), channel_of(recording, "lon"),
+                              accuracy_of(recording), recording.find("quality")};
+  if (from.lat == nullptr || from.lon == nullptr)
     throw Failure(usage, file + ": no channels of latitude and longitude (lat…, lon…)");
-  const Channel* accuracy = accuracy_of(recording);
-  const Channel* quality = recording.find("quality");
   estimate::GnssFixes fixes{.name = file, .fixes = {}};
   std::size_t invalid = 0, repeated = 0;
   for (std::size_t k = 0; k < recording.samples(); ++k) {
-    estimate::GnssFix fix{.time_s = recording.time.at(k),
-                          .latitude_rad = radians(*lat, k),
-                          .longitude_rad = radians(*lon, k)};
-    const bool valid = std::abs(fix.latitude_rad) <= rad_per_turn / 4.0 &&
-                       std::abs(fix.longitude_rad) <= rad_per_turn &&
-                       (fix.latitude_rad != 0.0 || fix.longitude_rad != 0.0) &&
-                       (quality == nullptr || quality->values[k] > 0.0);
-    if (!valid) {
+    const std::optional<estimate::GnssFix> fix = fix_at(recording, from, k);
+    if (!fix)
       ++invalid;
-      continue;
-    }
-    if (accuracy != nullptr && accuracy->values[k] > 0.0)
-      fix.std_m = accuracy->unit.quantity == Quantity::length
-                      ? accuracy->unit.si(accuracy->values[k])
-                      : accuracy->values[k];
-    if (!fixes.fixes.empty() && fix.latitude_rad == fixes.fixes.back().latitude_rad &&
-        fix.longitude_rad == fixes.fixes.back().longitude_rad) {
+    else if (!fixes.fixes.empty() && fix->latitude_rad == fixes.fixes.back().latitude_rad &&
+             fix->longitude_rad == fixes.fixes.back().longitude_rad)
       ++repeated;
-      continue;
-    }
-    fixes.fixes.push_back(fix);
+    else
+      fixes.fixes.push_back(*fix);
   }
   if (fixes.fixes.size() < 5)
     throw Failure(bad_input, fmt::format("{}: {} position fixes, expected at least 5", file,

@@ -111,8 +111,11 @@ struct AllSums {
   throw Failure(bad_input, path + ": " + why);
 }
 
-AllSums read_all(const NoiseCommand& command) {
-  std::vector<std::pair<RecordingSums, std::string>> read;
+using SumsOfFile = std::pair<RecordingSums, std::string>;
+
+// In the order of time.
+std::vector<SumsOfFile> read_in_order(const NoiseCommand& command) {
+  std::vector<SumsOfFile> read;
   for (const std::string& path : command.files) {
     read.emplace_back(read_sums(path), path);
     RecordingSums& one = read.back().first;
@@ -123,6 +126,20 @@ AllSums read_all(const NoiseCommand& command) {
       refuse_sums(path, "its sums were made with " + one.options + ": give the same");
   }
   std::ranges::sort(read, {}, [](const auto& one) { return one.first.place->first; });
+  return read;
+}
+
+// Whether the first and the last recording of the series are there, too.
+void expect_ends(const AllSums& all) {
+  const SumsPlace& first = *all.parts.front().place;
+  if (first.first != 0)
+    refuse_sums(all.paths.front(), "the sums of the recordings before it are not there");
+  if (!first.as_samples && static_cast<std::size_t>(std::bit_width(all.total)) != first.digits)
+    refuse_sums(all.paths.back(), "the sums of the recordings after it are not there");
+}
+
+AllSums read_all(const NoiseCommand& command) {
+  std::vector<SumsOfFile> read = read_in_order(command);
   AllSums all;
   double duration_s = 0.0, samples = 0.0;
   for (auto& [part, path] : read) {
@@ -140,11 +157,7 @@ AllSums read_all(const NoiseCommand& command) {
     all.paths.push_back(path);
   }
   all.rate_hz = samples / duration_s;
-  const SumsPlace& first = *all.parts.front().place;
-  if (first.first != 0)
-    refuse_sums(all.paths.front(), "the sums of the recordings before it are not there");
-  if (!first.as_samples && static_cast<std::size_t>(std::bit_width(all.total)) != first.digits)
-    refuse_sums(all.paths.back(), "the sums of the recordings after it are not there");
+  expect_ends(all);
   return all;
 }
 

@@ -352,6 +352,21 @@ void expect_no_break(const RecordSummary& summary) {
   if (summary.end == RecordEnd::disk_failed) throw Failure(failed, summary.end_reason);
 }
 
+template <class T>
+T* pointer_to(std::optional<T>& value) {
+  return value ? &*value : nullptr;
+}
+
+// With a procedure, the document is that of its verb.
+OutputFlags outputs_of_recording(const OutputFlags& flags, bool guided) {
+  OutputFlags own = flags;
+  if (guided) {
+    own.json.clear();
+    own.report.clear();
+  }
+  return own;
+}
+
 void run_record(const RecordCommand& given) {
   if (given.list) return list_sources(given);
   expect_sense(given);
@@ -366,15 +381,11 @@ void run_record(const RecordCommand& given) {
   if (!command.send_to.empty()) sender.emplace(command.send_to);
   without_interruption([&] {
     const report::RecordReport report =
-        record(command, guide ? &*guide : nullptr, stream ? &*stream : nullptr,
-               sender ? &*sender : nullptr);
+        record(command, pointer_to(guide), pointer_to(stream), pointer_to(sender));
     const report::Document document = report::describe(report);
     show_notes(report.notes, "", command.output);
-    // With a procedure, the document is that of its verb.
-    OutputFlags own = command.output;
-    if (guide) own.json.clear();
-    if (guide) own.report.clear();
-    if (!guide || command.output.json != "-") publish(document, own);
+    if (!guide || command.output.json != "-")
+      publish(document, outputs_of_recording(command.output, guide.has_value()));
     if (guide && !report.summary.files.empty())
       finish(*guide, report.summary.files.front(), command.output);
     expect_no_break(report.summary);

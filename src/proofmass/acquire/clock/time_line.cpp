@@ -100,6 +100,19 @@ std::uint64_t TimeLine::report_gap(double hole_s, double open_s) {
   return count;
 }
 
+/// Rows missing before a stamp, of which `known` by the device's own count; reports the others.
+std::uint64_t TimeLine::missing_in(const QueueItem& item,
+                                   double hole_s,
+                                   std::uint64_t known,
+                                   RowPlace place) {
+  const double open_s = hole_s - static_cast<double>(known) * step_.step_s();
+  const bool is_hole = clock_ == Clock::device && step_.is_hole(open_s);
+  if (known == 0 && place == RowPlace::within) step_.add(hole_s);
+  const bool breaks_off = place == RowPlace::after_break;
+  if (!is_hole && !breaks_off) return known;
+  return known + report_gap(hole_s, item.is_counted && breaks_off ? 0.0 : open_s);
+}
+
 /// Reports the rows missing before and between the current ones; advances the last stamp.
 void TimeLine::report_missing(const QueueItem& item, View<double> stamps_s) {
   std::uint64_t missing = item.arrival.lost_before + item.overrun;
@@ -107,13 +120,10 @@ void TimeLine::report_missing(const QueueItem& item, View<double> stamps_s) {
     const bool is_first = i == 0 && !has_rows_;
     const double hole_s = is_first ? 0.0 : stamps_s[i] - last_s_;
     if (i == 0) report_known(item, hole_s);
-    const double open_s = hole_s - static_cast<double>(missing) * step_.step_s();
-    const bool is_hole = clock_ == Clock::device && step_.is_hole(open_s);
-    const bool breaks_off = i == 0 && is_gap_;
-    if (missing == 0 && !is_first && !breaks_off) step_.add(hole_s);
-    if (is_hole || breaks_off)
-      missing += report_gap(hole_s, item.is_counted && breaks_off ? 0.0 : open_s);
-    rows_ += std::exchange(missing, 0);
+    const RowPlace place = i == 0 && is_gap_ ? RowPlace::after_break
+                           : is_first        ? RowPlace::first
+                                             : RowPlace::within;
+    rows_ += missing_in(item, hole_s, std::exchange(missing, 0), place);
     last_s_ = stamps_s[i];
   }
 }

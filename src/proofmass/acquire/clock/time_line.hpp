@@ -47,6 +47,7 @@ class TimeLine {
 
  private:
   enum class Clock { device, count, host };
+  enum class RowPlace { first, after_break, within };
   void stamp_by_device(const QueueItem& item, std::vector<double>& stamps_s);
   void stamp_by_count(const QueueItem& item, std::vector<double>& stamps_s);
   void stamp_by_host(const QueueItem& item, std::vector<double>& stamps_s);
@@ -56,6 +57,10 @@ class TimeLine {
   void report_missing(const QueueItem& item, View<double> stamps_s);
   void report_known(const QueueItem& item, double hole_s);
   [[nodiscard]] std::uint64_t report_gap(double hole_s, double open_s);
+  [[nodiscard]] std::uint64_t missing_in(const QueueItem& item,
+                                         double hole_s,
+                                         std::uint64_t known,
+                                         RowPlace place);
   void report(EventKind kind, double duration_s, std::uint64_t rows, std::string text);
 
   Clock clock_ = Clock::host;

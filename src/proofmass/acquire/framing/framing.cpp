@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
+#include <optional>
 
 #include "proofmass/acquire/framing/frames.hpp"
 #include "proofmass/acquire/framing/lines.hpp"
@@ -29,29 +30,31 @@ Result<std::string> sync_word(std::string_view hex) {
   return word;
 }
 
+std::optional<Framing> framing_named(std::string_view word, bool in_datagrams) {
+  if (word == "lines") return Framing::lines;
+  if (in_datagrams) return word == "packet" ? std::optional(Framing::packet) : std::nullopt;
+  if (word == "cobs") return Framing::cobs;
+  if (word == "slip") return Framing::slip;
+  if (word.starts_with("sync:")) return Framing::sync;
+  return std::nullopt;
+}
+
 Status choose_framing(SourceUri& uri, FramingOptions& options) {
   const std::string word = uri.value("framing").value_or("");
   options.fields = uri.value("fields").value_or("");
   const bool in_datagrams = options.carrier == Carrier::datagrams;
-  if (word.empty() && in_datagrams && !options.fields.empty()) {
-    options.framing = Framing::packet;
-  } else if (word.empty() || word == "lines") {
-    options.framing = Framing::lines;
-  } else if (word == "packet" && in_datagrams) {
-    options.framing = Framing::packet;
-  } else if (word == "cobs" && !in_datagrams) {
-    options.framing = Framing::cobs;
-  } else if (word == "slip" && !in_datagrams) {
-    options.framing = Framing::slip;
-  } else if (word.starts_with("sync:") && !in_datagrams) {
-    auto sync = sync_word(std::string_view(word).substr(5));
-    if (!sync) return sync.error();
-    options.framing = Framing::sync;
-    options.sync = std::move(sync).value();
-  } else {
+  const bool is_packet = in_datagrams && !options.fields.empty();
+  const auto framing =
+      framing_named(!word.empty() ? word : (is_packet ? "packet" : "lines"), in_datagrams);
+  if (!framing)
     return invalid(
         fmt::format("framing={}: expected {}", word,
                     in_datagrams ? "lines or packet" : "lines, cobs, slip or sync:AA55"));
+  options.framing = *framing;
+  if (*framing == Framing::sync) {
+    auto sync = sync_word(std::string_view(word).substr(5));
+    if (!sync) return sync.error();
+    options.sync = std::move(sync).value();
   }
   if (options.fields.empty() == (options.framing == Framing::lines)) return Done{};
   return options.fields.empty()
@@ -120,6 +123,19 @@ void Decoder::describe(SourceHead& head) const {
     head.recording.time.start_ns = first_ns;
 }
 
+namespace {
+
+Error no_rows(const Decoder& decoder, const OpenOptions& options, bool has_ended) {
+  const std::string what = decoder.what_came();
+  if (!what.empty()) return {Errc::device, what};
+  if (has_ended) return {Errc::device, "ended before anything came"};
+  return {Errc::device,
+          fmt::format("nothing came within {} s: is it switched on, and does it send?",
+                      static_cast<double>(options.patience.count()) * 1e-3)};
+}
+
+}  // namespace
+
 Status await_rows(Decoder& decoder, const OpenOptions& options, const Pump& pump) {
   using std::chrono::milliseconds;
   using Clock = std::chrono::steady_clock;
@@ -139,13 +155,7 @@ Status await_rows(Decoder& decoder, const OpenOptions& options, const Pump& pump
     if (!pumped) return pumped.error();
     has_more = *pumped;
   }
-  const std::string what = decoder.what_came();
-  if (what.empty() && !has_more) return Error{Errc::device, "ended before anything came"};
-  if (what.empty())
-    return Error{Errc::device,
-                 fmt::format("nothing came within {} s: is it switched on, and does it send?",
-                             static_cast<double>(options.patience.count()) * 1e-3)};
-  return Error{Errc::device, what};
+  return no_rows(decoder, options, !has_more);
 }
 
 }  // namespace proofmass::acquire

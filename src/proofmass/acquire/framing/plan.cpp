@@ -15,6 +15,16 @@
 namespace proofmass::acquire {
 namespace {
 
+/// Whether a field is called and behaves like a counter of rows.
+bool is_counter(const RowEvidence& rows, std::size_t field) {
+  const RowField& found = rows.fields[field];
+  if (!found.is_figures || !signal::is_counter_name(found.heading)) return false;
+  if (found.bits > 0) return true;
+  signal::RunningCounter counter;
+  if (!rows.first.empty()) counter.add(rows.first[field]);
+  return counter.counts_rows();
+}
+
 Result<std::optional<RowPlan::Counter>> find_counter(const RowEvidence& rows,
                                                      const FramingOptions& options) {
   const auto counter_of = [&](std::size_t field) {
@@ -28,14 +38,23 @@ Result<std::optional<RowPlan::Counter>> find_counter(const RowEvidence& rows,
       return no_such_field(rows, "counter", options.counter);
     return counter_of(*field);
   }
-  for (std::size_t f = 0; rows.has_names && f < rows.fields.size(); ++f) {
-    if (!rows.fields[f].is_figures || !signal::is_counter_name(rows.fields[f].heading)) continue;
-    if (rows.fields[f].bits > 0) return counter_of(f);
-    signal::RunningCounter counter;
-    if (!rows.first.empty()) counter.add(rows.first[f]);
-    if (counter.counts_rows()) return counter_of(f);
-  }
+  for (std::size_t f = 0; rows.has_names && f < rows.fields.size(); ++f)
+    if (is_counter(rows, f)) return counter_of(f);
   return std::optional<RowPlan::Counter>();
+}
+
+/// The fields of columns=, each once, without the clock.
+Result<std::vector<std::size_t>> listed_fields(const RowEvidence& rows,
+                                               const FramingOptions& options,
+                                               std::optional<std::size_t> clock) {
+  std::vector<std::size_t> fields;
+  for (const std::string& name : options.columns) {
+    const auto field = find_field(rows.fields, name);
+    if (!field || !rows.fields[*field].is_figures) return no_such_field(rows, "columns", name);
+    if (*field != clock && std::ranges::find(fields, *field) == fields.end())
+      fields.push_back(*field);
+  }
+  return fields;
 }
 
 /// The fields that are channels, in the order of columns= or in their own.
@@ -44,12 +63,9 @@ Result<std::vector<std::size_t>> channel_fields(const RowEvidence& rows,
                                                 std::optional<std::size_t> clock) {
   std::vector<std::size_t> fields;
   if (rows.has_names && !options.columns.empty()) {
-    for (const std::string& name : options.columns) {
-      const auto field = find_field(rows.fields, name);
-      if (!field || !rows.fields[*field].is_figures) return no_such_field(rows, "columns", name);
-      if (*field != clock && std::ranges::find(fields, *field) == fields.end())
-        fields.push_back(*field);
-    }
+    auto listed = listed_fields(rows, options, clock);
+    if (!listed) return listed.error();
+    fields = std::move(listed).value();
   } else {
     for (std::size_t f = 0; f < rows.fields.size(); ++f)
       if (f != clock && rows.fields[f].is_figures) fields.push_back(f);
@@ -57,6 +73,27 @@ Result<std::vector<std::size_t>> channel_fields(const RowEvidence& rows,
   if (fields.empty())
     return Error{Errc::invalid_argument, "there is no column of figures besides the clock"};
   return fields;
+}
+
+/// A channel's own unit replaces that of its heading; one for all applies to headings without unit.
+Status apply_unit(const PerColumn& units, RowPlan::Column& column) {
+  const std::string own = units.of(column.field);
+  const bool is_open = column.head.unit.quantity == Quantity::unknown;
+  if (own.empty() && (!is_open || units.all.empty())) return Done{};
+  const auto unit = unit_setting(own.empty() ? units.all : own);
+  if (!unit) return unit.error();
+  column.head.unit = *unit;
+  return Done{};
+}
+
+Status apply_scale(const PerColumn& scales, RowPlan::Column& column) {
+  const std::string own = scales.of(column.field);
+  const std::string& text = own.empty() ? scales.all : own;
+  if (text.empty()) return Done{};
+  const auto scale = scale_setting(text);
+  if (!scale) return scale.error();
+  column.scale = *scale;
+  return Done{};
 }
 
 /// Applies units and factors from the settings to channels that are not counters.
@@ -67,20 +104,8 @@ Status apply_settings(const RowEvidence& rows, const FramingOptions& options, Ro
   if (!scales) return scales.error();
   for (RowPlan::Column& column : plan.columns) {
     if (plan.counter && column.field == plan.counter->field) continue;
-    const std::string own_unit = units->of(column.field);
-    const std::string& unit_text = own_unit.empty() ? units->all : own_unit;
-    const bool is_open = column.head.unit.quantity == Quantity::unknown;
-    if (!own_unit.empty() || (is_open && !unit_text.empty())) {
-      const auto unit = unit_setting(unit_text);
-      if (!unit) return unit.error();
-      column.head.unit = *unit;
-    }
-    const std::string own_scale = scales->of(column.field);
-    const std::string& scale_text = own_scale.empty() ? scales->all : own_scale;
-    if (scale_text.empty()) continue;
-    const auto scale = scale_setting(scale_text);
-    if (!scale) return scale.error();
-    column.scale = *scale;
+    if (const Status applied = apply_unit(*units, column); !applied) return applied;
+    if (const Status applied = apply_scale(*scales, column); !applied) return applied;
   }
   return Done{};
 }

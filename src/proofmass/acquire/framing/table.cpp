@@ -47,6 +47,15 @@ class Table final : public LineDialect {
     if (cells_.size() == fields_.size() + 1 && io::trimmed(cells_.back()).empty())
       cells_.pop_back();
     if (cells_.size() != fields_.size()) return misfit();
+    const LineFit fit = read_figures(values);
+    if (fit == LineFit::row && clock)
+      tick = fields_[*clock].is_calendar ? tick_of_calendar(cells_[*clock])
+                                         : tick_in(io::trimmed(cells_[*clock]), layout_.point);
+    return fit;
+  }
+
+ private:
+  LineFit read_figures(std::span<double> values) const {
     bool has_figure = false;
     for (std::size_t c = 0; c < cells_.size(); ++c) {
       if (!fields_[c].is_figures) continue;
@@ -55,14 +64,9 @@ class Table final : public LineDialect {
       has_figure = has_figure || cell.kind == CellKind::number;
       values[c] = cell.value;
     }
-    if (!has_figure) return LineFit::words;
-    if (clock)
-      tick = fields_[*clock].is_calendar ? tick_of_calendar(cells_[*clock])
-                                         : tick_in(io::trimmed(cells_[*clock]), layout_.point);
-    return LineFit::row;
+    return has_figure ? LineFit::row : LineFit::words;
   }
 
- private:
   /// A line with numbers for half of the columns was a row.
   [[nodiscard]] LineFit misfit() const {
     const auto figures = std::ranges::count_if(cells_, [&](std::string_view cell) {

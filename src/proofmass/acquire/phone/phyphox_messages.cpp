@@ -96,6 +96,33 @@ Result<PhyphoxConfig> parse_phyphox_config(std::string_view text) {
   return config;
 }
 
+namespace {
+
+// The values of the buffers, those of one after the other.
+class BufferValues {
+ public:
+  BufferValues(const std::vector<std::string>& names, PhyphoxReply& out)
+      : names_(names), out_(out) {}
+  void take(std::string_view path, const io::JsonLeaf& leaf) {
+    for (std::size_t tried = 0; tried < names_.size(); ++tried) {
+      std::string_view rest = path;
+      if (take_word(rest, names_[current_])) {
+        out_.is_there[current_] = true;
+        if (take_word(rest, "buffer")) out_.buffers[current_].push_back(leaf.figure);
+        return;
+      }
+      current_ = (current_ + 1) % names_.size();
+    }
+  }
+
+ private:
+  const std::vector<std::string>& names_;
+  PhyphoxReply& out_;
+  std::size_t current_ = 0;
+};
+
+}  // namespace
+
 Status parse_phyphox_reply(std::string_view text,
                            const std::vector<std::string>& names,
                            PhyphoxReply& out) {
@@ -104,20 +131,10 @@ Status parse_phyphox_reply(std::string_view text,
   out.is_there.assign(names.size(), false);
   out.session.clear();
   bool has_status = false;
-  std::size_t current = 0;  // the values of one buffer are consecutive
-  const auto take_value = [&](std::string_view path, const io::JsonLeaf& leaf) {
-    for (std::size_t tried = 0; tried < names.size();
-         ++tried, current = (current + 1) % names.size()) {
-      std::string_view rest = path;
-      if (!take_word(rest, names[current])) continue;
-      out.is_there[current] = true;
-      if (take_word(rest, "buffer")) out.buffers[current].push_back(leaf.figure);
-      return;
-    }
-  };
+  BufferValues values(names, out);
   const Status read = io::visit_json(text, [&](const io::JsonLeaf& leaf) {
     std::string_view path = leaf.path;
-    if (take_word(path, "buffer")) return take_value(path, leaf);
+    if (take_word(path, "buffer")) return values.take(path, leaf);
     if (path == "status.session") out.session = text_in(leaf);
     if (path != "status.measuring") return;
     has_status = true;

@@ -42,20 +42,28 @@ PhyphoxSource::PhyphoxSource(std::unique_ptr<HttpClient> client,
   last_rows_ = Clock::now();
 }
 
+/// Asks when it is time, and takes the next answer. False if there is none until then.
+Result<bool> PhyphoxSource::take_next(Clock::time_point until) {
+  if (!client_->is_waiting()) {
+    std::this_thread::sleep_until(std::min(next_question_, until));
+    if (Clock::now() < next_question_) return false;
+    ask();
+  }
+  const auto left = std::chrono::ceil<milliseconds>(until - Clock::now());
+  const auto answer = client_->answer(std::max(left, milliseconds(0)));
+  if (!answer) return phyphox_gone(answer.error());
+  if (!*answer) return false;
+  if (const Status taken = take(**answer); !taken) return taken.error();
+  return true;
+}
+
 Result<Arrived> PhyphoxSource::read(Arrival& arrival, milliseconds patience) {
   arrival.clear(head_.recording.channels.size());
   const auto until = Clock::now() + patience;
   do {
-    if (!client_->is_waiting()) {
-      std::this_thread::sleep_until(std::min(next_question_, until));
-      if (Clock::now() < next_question_) break;
-      ask();
-    }
-    const auto left = std::chrono::ceil<milliseconds>(until - Clock::now());
-    const auto answer = client_->answer(std::max(left, milliseconds(0)));
-    if (!answer) return phyphox_gone(answer.error());
-    if (!*answer) break;
-    if (const Status taken = take(**answer); !taken) return taken.error();
+    const auto taken = take_next(until);
+    if (!taken) return taken.error();
+    if (!*taken) break;
     if (!is_behind_) merge_.take(arrival);
   } while (arrival.rows() == 0 && Clock::now() < until);
   for (Note& note : merge_.take_notes()) notes_.push_back(std::move(note));

@@ -32,6 +32,7 @@ class PhyphoxSource : public Source {
   using Clock = std::chrono::steady_clock;
 
   void ask();
+  [[nodiscard]] Result<bool> take_next(Clock::time_point until);
   [[nodiscard]] Status take(const HttpAnswer& answer);
   [[nodiscard]] Status take_bad(std::string why);
   [[nodiscard]] Status take_session(const PhyphoxReply& reply);
