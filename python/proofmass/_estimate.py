@@ -255,7 +255,7 @@ def tilt(
         Minimum duration of a rest (default 0.5).
     bias_std : float, optional
         Standard deviation of the bias of each axis; with a sensor file, of its change since the
-        calibration (default: from the norm of the force at rest).
+        calibration (default: from a prior and the norm of the force at rest).
     gravity_std : float, optional
         Standard deviation of gravity (default: 0 with gravity, 4e-4 with latitude, else 0.015).
     angle : str or int, optional

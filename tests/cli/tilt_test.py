@@ -55,7 +55,7 @@ class Tilt(CommandTest):
 
     def test_a_still_sensor_tells_roll_and_pitch(self):
         self.still()
-        document = self.document("tilt", "still.csv")
+        document = self.document("tilt", "still.csv", "--bias-std", "0")
         self.assertEqual(document["mode"], "still")
         self.assertEqual(document["samples"], 1000)
         for key, truth in (("roll_rad", 0.2), ("pitch_rad", -0.1)):
@@ -63,6 +63,12 @@ class Tilt(CommandTest):
             self.assertAlmostEqual(angle["value"], truth, delta=4.0 * angle["std"])
             self.assertLess(angle["std"], 5e-4)
         self.assertEqual(len(document["rests"]), 1)
+
+    def test_an_uncalibrated_sensor_is_as_accurate_as_such_sensors_are(self):
+        self.still()
+        document = self.document("tilt", "still.csv")
+        self.assertIn("calibration is unknown", " ".join(document["warnings"]))
+        self.assertTrue(0.004 < document["pitch_rad"]["std"] < 0.02)
 
     def test_a_sensor_of_the_other_sign_is_turned_round(self):
         self.still(sign=-1.0)

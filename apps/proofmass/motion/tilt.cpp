@@ -57,7 +57,7 @@ void add_tilt_flags(CLI::App& verb, TiltCommand& command) {
       ->check(positive());
   add("--bias-std", command.bias_std_mps2, "M_PER_S2",
       "standard deviation of the bias of each axis; with a --sensor file, of its change since the "
-      "calibration (default: from the norm of the force at rest)")
+      "calibration (default: from a prior and the norm of the force at rest)")
       ->check(not_negative());
   add("--gravity-std", command.gravity_std_mps2, "M_PER_S2", gravity_std_help)
       ->check(not_negative());

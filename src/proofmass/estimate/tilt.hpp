@@ -38,7 +38,7 @@ struct TiltOptions {
   /// Its flicker and random walk are added to the noise of the recording.
   sensor::NoiseModel noise = {};
   /// Standard deviation of each axis's bias; with a calibration, of its change since then. Absent:
-  /// estimated from the departure of the force at rest from gravity.
+  /// from a prior, and the departure of the force at rest from gravity (tilt/bias_change.hpp).
   std::optional<double> bias_std_mps2 = std::nullopt;
   double rate_bias_std_radps = 0.05;       ///< initial bias of the gyroscope
   double rate_bias_walk_radps_rts = 2e-5;  ///< its random walk
@@ -100,6 +100,7 @@ struct TiltSolution {
   TiltShares shares{};  ///< contributions to `final`
   std::vector<TiltRest> rests;
   double bias_std_mps2 = 0.0;          ///< TiltOptions::bias_std_mps2, as given or as estimated
+  double norm_std_mps2 = 0.0;          ///< variation of the norm at rest with the attitude
   std::optional<TiltMotion> motion{};  ///< only for a moving base
   std::optional<std::array<Uncertain, 3>> rate_bias_radps{};  ///< at the end, with gyroscope
   std::optional<Consistency> consistency{};                   ///< of the filter in motion

@@ -17,8 +17,9 @@ namespace {
 TEST(TiltCoverage, AtRestIsNinetyFivePercent) {
   Coverage roll, pitch;
   for (std::uint64_t run = 0; run < 4000; ++run) {
-    const auto solution = estimate_tilt(still_record(force_at(0.3, -0.2), 0.02, 400, run),
-                                        {.gravity_mps2 = {9.80665, 1e-3}, .base = TiltBase::still});
+    const auto solution = estimate_tilt(
+        still_record(force_at(0.3, -0.2), 0.02, 400, run),
+        {.gravity_mps2 = {9.80665, 1e-3}, .base = TiltBase::still, .bias_std_mps2 = 0.0});
     ASSERT_TRUE(solution);
     roll.add(solution->final.roll_rad->value, solution->final.roll_rad->std, 0.3);
     pitch.add(solution->final.pitch_rad->value, solution->final.pitch_rad->std, -0.2);
@@ -59,8 +60,8 @@ TEST(TiltCoverage, AtRestWithACoarseConverterIsAtLeastNinetyThreePercent) {
       TiltRecord record = still_record(force_at(roll, pitch), noise * step, 1000, run);
       for (auto& axis : record.accel_mps2)
         for (double& value : axis) value = step * std::round(value / step);
-      const auto solution =
-          estimate_tilt(record, {.gravity_mps2 = {9.80665, 0.02}, .base = TiltBase::still});
+      const auto solution = estimate_tilt(
+          record, {.gravity_mps2 = {9.80665, 0.02}, .base = TiltBase::still, .bias_std_mps2 = 0.0});
       if (!solution || !solution->final.roll_rad || !solution->final.pitch_rad) {
         ++none;
         continue;
@@ -119,6 +120,7 @@ Shares moving_coverage(const MovingOptions& base_options, double rate_scale_std,
     const MovingBase base = moving_base(base_options, 5000 + static_cast<std::uint64_t>(run));
     const auto solution = estimate_tilt(base.record, {.gravity_mps2 = {9.80665, 1e-3},
                                                       .base = TiltBase::moving,
+                                                      .bias_std_mps2 = 0.0,
                                                       .rate_scale_std = rate_scale_std})
                               .value();
     const TiltSeries& s = solution.series;
@@ -216,9 +218,10 @@ TEST_P(SwungTilt, ItsBandsHold) {
   Largest smoothed, filtered;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const MovingBase base = swung(GetParam(), seed);
-    const auto solution =
-        estimate_tilt(base.record, {.gravity_mps2 = {9.80665, 1e-3}, .base = TiltBase::moving})
-            .value();
+    const auto solution = estimate_tilt(base.record, {.gravity_mps2 = {9.80665, 1e-3},
+                                                      .base = TiltBase::moving,
+                                                      .bias_std_mps2 = 0.0})
+                              .value();
     const TiltSeries& s = solution.series;
     for (std::size_t k = 100; k + 100 < base.up.size(); k += 200) {
       smoothed.add(s.roll_rad[k], s.roll_std_rad[k], base.roll_rad[k]);

@@ -53,6 +53,28 @@ double correlation_time(const Departures& found, double step_s, double longest_s
   return longest_s;
 }
 
+// The largest density at low frequencies of the departures' means over 1, 2, 4 … of them, divided
+// by twice the variance: the correlation time of a first-order process whose density is as large.
+// It is the one that counts where vibration dominates the variance, and the autocorrelation falls
+// to 1/e within a sample.
+double time_of_density(const Departures& found, double step_s, double longest_s) {
+  constexpr std::size_t fewest = 8;
+  const std::size_t size = found.vectors.size();
+  std::vector<Mat<3>> sums = found.vectors;
+  double variance = 0.0, time_s = 0.0;
+  for (const Mat<3>& v : sums) variance += v.squaredNorm() / static_cast<double>(size);
+  for (std::size_t length = 1; sums.size() >= fewest && variance > 0.0; length *= 2) {
+    const double span = static_cast<double>(length);
+    if (span * step_s > longest_s) break;
+    double squares = 0.0;
+    for (const Mat<3>& sum : sums) squares += sum.squaredNorm() / static_cast<double>(sums.size());
+    time_s = std::max(time_s, 0.5 * step_s * squares / (span * variance));
+    for (std::size_t k = 0; 2 * k + 1 < sums.size(); ++k) sums[k] = sums[2 * k] + sums[2 * k + 1];
+    sums.resize(sums.size() / 2);
+  }
+  return time_s;
+}
+
 // (tr S⁸)^(1/8): the largest eigenvalue if it dominates, 3^(1/8) times that if all are equal.
 double largest_eigenvalue(const Mat<3, 3>& S) {
   const double size = S.trace();
@@ -117,6 +139,7 @@ BaseAccel base_accel_over(const TiltEpochs& epochs,
   const double step_s = median(steps).value_or(0.01);
   const double longest_s = std::max(usual_longest_s, longest_of_memory * mean_memory_s);
   out.time_s = std::max(correlation_time(departures, step_s, longest_s), 0.5 * step_s);
+  if (gyroscope) out.time_s = std::max(out.time_s, time_of_density(departures, step_s, longest_s));
   out.reading_std_mps2 = std::max(
       1e-4 * known.gravity_mps2, std::numbers::sqrt2 / 2.0 * robust_std(differences).value_or(0.0));
   return out;

@@ -59,8 +59,10 @@ class BaseScatter {
 /// The base's acceleration, from the scatter of the force.
 struct BaseAccel {
   std::vector<Mat<3, 3>> cov_m2ps4;  ///< in sensor axes, at every epoch, over the past M
-  double time_s = 0.0;               ///< lag at which its autocorrelation falls to 1/e, 2 s at most
-  double reading_std_mps2 = 0.0;     ///< white part, from the scatter of neighbours
+  /// Lag at which its autocorrelation falls to 1/e, at most 2 s or 0.4 T; with gyroscope, if that
+  /// is longer, the time of a first-order process with its variance and low-frequency density.
+  double time_s = 0.0;
+  double reading_std_mps2 = 0.0;  ///< white part, from the scatter of neighbours
   /// Without gyroscope: standard deviation, along each axis across the mean force, of what the norm
   /// does not explain by acceleration, and which may be rotation; 0 if it explains most.
   double perhaps_rotation_mps2 = 0.0;

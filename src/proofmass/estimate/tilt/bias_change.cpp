@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
 
 #include "proofmass/core/statistics.hpp"
 
@@ -16,15 +17,19 @@ namespace {
 constexpr double prior_of_none = 0.1, prior_of_stated = 0.9;
 constexpr double least_change_mps2 = 0.2e-3 * standard_gravity_mps2;
 constexpr double most_change_mps2 = 60e-3 * standard_gravity_mps2;
+// Without a calibration.
+constexpr double usual_bias_mps2 = 10e-3 * standard_gravity_mps2, log_spread = 1.0;
 constexpr std::size_t most_rests = 16;
 
-// Sizes of the change with their weights: the usual one, then a grid even in the logarithm.
+// Standard deviations of the biases, or of their change, with their weights.
 struct Size {
   double std_mps2, weight;
 };
+using Sizes = std::array<Size, 32>;
 
-std::array<Size, 32> prior_sizes(std::optional<double> stability_mps2) {
-  std::array<Size, 32> sizes{};
+// The usual change, then a grid even in the logarithm.
+Sizes sizes_of_change(std::optional<double> stability_mps2) {
+  Sizes sizes{};
   const double usual = stability_mps2 ? prior_of_stated : prior_of_none;
   sizes[0] = {stability_mps2.value_or(0.0), usual};
   const auto others = static_cast<double>(sizes.size() - 1);
@@ -32,6 +37,19 @@ std::array<Size, 32> prior_sizes(std::optional<double> stability_mps2) {
   for (std::size_t k = 1; k < sizes.size(); ++k)
     sizes[k] = {least_change_mps2 * std::exp(apart * static_cast<double>(k - 1)),
                 (1.0 - usual) / others};
+  return sizes;
+}
+
+// Log-normal: three standard deviations on either side of the median.
+Sizes uncalibrated_sizes() {
+  Sizes sizes{};
+  double sum = 0.0;
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    const double off = 6.0 * static_cast<double>(k) / static_cast<double>(sizes.size() - 1) - 3.0;
+    sizes[k] = {usual_bias_mps2 * std::exp(log_spread * off), std::exp(-0.5 * off * off)};
+    sum += sizes[k].weight;
+  }
+  for (Size& size : sizes) size.weight /= sum;
   return sizes;
 }
 
@@ -53,7 +71,7 @@ double log_likelihood(const Eigen::VectorXd& off, const Eigen::MatrixXd& cov) {
 }
 
 // Half width of the central 95 % of a zero-mean mixture of normal distributions.
-double half_width(const std::array<Size, 32>& sizes, double known_variance) {
+double half_width(const Sizes& sizes, double known_variance) {
   double low = 0.0, high = 0.0;
   for (const Size& size : sizes)
     high = std::max(high, 3.0 * std::sqrt(known_variance + square(size.std_mps2)));
@@ -69,15 +87,22 @@ double half_width(const std::array<Size, 32>& sizes, double known_variance) {
   return high;
 }
 
-}  // namespace
+struct Posterior {
+  Sizes sizes;
+  double one_axis_m2ps4 = 0.0;  ///< variance due to the calibration, mean over the rests
+  /// Such that ± 1.96 of it, with that variance, is the 95 % interval of the mixture.
+  [[nodiscard]] double std_mps2() const {
+    const double wanted = square(half_width(sizes, one_axis_m2ps4) / 1.959964);
+    return std::sqrt(std::max(0.0, wanted - one_axis_m2ps4));
+  }
+};
 
-BiasChange bias_change(const std::vector<TiltRest>& rests,
+Posterior posterior_of(Sizes sizes,
+                       const std::vector<TiltRest>& rests,
                        const ForceSpread& spread,
-                       const Uncertain& gravity_mps2,
-                       std::optional<double> stability_mps2) {
-  std::array<Size, 32> sizes = prior_sizes(stability_mps2);
-  const double odds_before = (1.0 - sizes[0].weight) / sizes[0].weight;
+                       const Uncertain& gravity_mps2) {
   const std::vector<const TiltRest*> some = some_of(rests);
+  if (some.empty()) return {sizes};
   const auto count = static_cast<Eigen::Index>(some.size());
   Eigen::MatrixXd up(count, 3), noise = Eigen::MatrixXd::Zero(count, count);
   Eigen::VectorXd off(count);
@@ -93,22 +118,34 @@ BiasChange bias_change(const std::vector<TiltRest>& rests,
   }
   const Eigen::MatrixXd known = up * calibration * up.transpose() + noise +
                                 square(gravity_mps2.std) * Eigen::MatrixXd::Ones(count, count);
-  if (count > 0) {
-    double best = -std::numeric_limits<double>::infinity(), sum = 0.0;
-    std::array<double, 32> logs{};
-    for (std::size_t k = 0; k < sizes.size(); ++k) {
-      logs[k] = log_likelihood(off, known + square(sizes[k].std_mps2) * up * up.transpose());
-      best = std::max(best, logs[k]);
-    }
-    for (std::size_t k = 0; k < sizes.size(); ++k)
-      sum += sizes[k].weight *= std::exp(logs[k] - best);
-    for (Size& size : sizes) size.weight /= sum;
+  double best = -std::numeric_limits<double>::infinity(), sum = 0.0;
+  std::array<double, std::tuple_size_v<Sizes>> logs{};
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    logs[k] = log_likelihood(off, known + square(sizes[k].std_mps2) * up * up.transpose());
+    best = std::max(best, logs[k]);
   }
-  const double one_axis = calibration.trace() / 3.0;
-  const double wanted = square(half_width(sizes, one_axis) / 1.959964);
-  const double other = 1.0 - sizes[0].weight;
-  return {other / (other + odds_before * sizes[0].weight),
-          std::sqrt(std::max(0.0, wanted - one_axis))};
+  for (std::size_t k = 0; k < sizes.size(); ++k) sum += sizes[k].weight *= std::exp(logs[k] - best);
+  for (Size& size : sizes) size.weight /= sum;
+  return {sizes, calibration.trace() / 3.0};
+}
+
+}  // namespace
+
+BiasChange bias_change(const std::vector<TiltRest>& rests,
+                       const ForceSpread& spread,
+                       const Uncertain& gravity_mps2,
+                       std::optional<double> stability_mps2) {
+  const Sizes prior = sizes_of_change(stability_mps2);
+  const double odds_before = (1.0 - prior[0].weight) / prior[0].weight;
+  const Posterior found = posterior_of(prior, rests, spread, gravity_mps2);
+  const double usual = found.sizes[0].weight, other = 1.0 - usual;
+  return {other / (other + odds_before * usual), found.std_mps2()};
+}
+
+double uncalibrated_bias_std_mps2(const std::vector<TiltRest>& rests,
+                                  const ForceSpread& spread,
+                                  const Uncertain& gravity_mps2) {
+  return posterior_of(uncalibrated_sizes(), rests, spread, gravity_mps2).std_mps2();
 }
 
 }  // namespace proofmass::estimate

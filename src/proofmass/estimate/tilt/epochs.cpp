@@ -91,7 +91,7 @@ TiltKnown known_of(const TiltRecord& record,
                   .rate_bias_std_radps = options.rate_bias_std_radps,
                   .rate_bias_walk_radps_rts = options.rate_bias_walk_radps_rts};
   if (options.calibration) known.norm_std_mps2 = calibrated_norm_std_mps2;
-  if (solution.bias_std_mps2 > 0.0) known.norm_std_mps2 = solution.bias_std_mps2;
+  if (solution.norm_std_mps2 > 0.0) known.norm_std_mps2 = solution.norm_std_mps2;
   std::vector<double> norms;
   for (const TiltRest& rest : solution.rests)
     if (rest.norm_mps2) norms.push_back(rest.norm_mps2->value);

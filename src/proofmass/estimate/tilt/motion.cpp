@@ -16,8 +16,8 @@ namespace {
 // Consecutive smoothers, each linearised about the previous path.
 constexpr int gyroscope_passes = 3, free_passes = 4;
 // Mean squared distance of a smoothed path from the filter's, in the filter's standard deviations,
-// beyond which the iteration has gone astray: at most 1 is expected.
-constexpr double plausible_distance2 = 5.0;
+// beyond which the iteration may have gone astray: less than 1 is expected.
+constexpr double plausible_distance2 = 1.0;
 
 void set(TiltSolution& solution, std::size_t k, const TiltAngles& angles, bool smoothed) {
   TiltSeries& s = solution.series;

@@ -71,12 +71,15 @@ struct BlockLevels {
 };
 
 // Noise of a block's mean from second differences, which eliminate a steady change, or that of
-// white measurements if larger.
+// white measurements if larger. The means of a sensor whose filter or flicker correlates its noise
+// scatter by more than white ones, but if it is much more they are those of a swing.
 double noise_of_means(const std::vector<double>& means, double white) {
+  constexpr double most_of_white = 1.5, most_of_a_sensor_mps2 = 5e-3 * standard_gravity_mps2;
   std::vector<double> bends;
   for (std::size_t b = 2; b < means.size(); ++b)
     bends.push_back((means[b] - 2.0 * means[b - 1] + means[b - 2]) / std::sqrt(6.0));
-  return std::max(white, robust_std(bends).value_or(0.0));
+  return std::clamp(robust_std(bends).value_or(0.0), white,
+                    std::max(most_of_white * white, most_of_a_sensor_mps2));
 }
 
 std::vector<double> block_means(View<double> axis, const signal::Rest& rest, std::size_t block) {
@@ -148,6 +151,19 @@ double usual_rate_hz(const std::vector<double>& time_s) {
   return step > 0.0 ? 1.0 / step : 0.0;
 }
 
+// The same on any axis.
+bool level_creeps(const TiltRecord& record,
+                  const signal::RestSearch& found,
+                  const signal::Rest& rest,
+                  std::size_t block) {
+  const double duration_s =
+      static_cast<double>(rest.last - rest.first + 1) / usual_rate_hz(record.time_s);
+  std::size_t row = 0;
+  return std::ranges::any_of(record.accel_mps2, [&](const std::vector<double>& axis) {
+    return !axis.empty() && creeps(axis, rest, block, found.noise_std[row++], duration_s);
+  });
+}
+
 }  // namespace
 
 signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options) {
@@ -167,7 +183,14 @@ signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options
     std::vector<BlockLevels> levels;
     for (std::size_t i = 0; i < axes.size(); ++i)
       levels.push_back(levels_of(axes[i], rest, block, found.noise_std[i], steps[i]));
-    add_standing(rest, block, found.window, levels, standing);
+    std::vector<signal::Rest> parts;
+    add_standing(rest, block, found.window, levels, parts);
+    // A slow motion is cut into parts in which the level moves on.
+    if (parts.size() > 1)
+      std::erase_if(parts, [&](const signal::Rest& part) {
+        return level_creeps(record, found, part, block);
+      });
+    standing.insert(standing.end(), parts.begin(), parts.end());
   }
   if (!found.rests.empty() && standing.empty())
     found.why_none = "wherever it is quiet the level changes";
@@ -177,19 +200,14 @@ signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options
 
 void drop_slow_motion(const TiltRecord& record, signal::RestSearch& found) {
   constexpr double edge = 1.5;  // times the noise
-  const double rate_hz = usual_rate_hz(record.time_s);
   const std::size_t block = std::max<std::size_t>(1, found.window / 2);
   std::erase_if(found.rests, [&](const signal::Rest& rest) {
-    const double duration_s = static_cast<double>(rest.last - rest.first + 1) / rate_hz;
+    if (level_creeps(record, found, rest, block)) return true;
     std::size_t row = 0;
-    bool is_smooth = true;
-    for (const auto& axis : record.accel_mps2) {
-      if (axis.empty()) continue;
-      const double noise = found.noise_std[row++];
-      if (creeps(axis, rest, block, noise, duration_s)) return true;
-      is_smooth = is_smooth && left_of_polynomial(axis, rest) <= square(edge * noise);
-    }
-    return is_smooth;
+    return std::ranges::all_of(record.accel_mps2, [&](const std::vector<double>& axis) {
+      return axis.empty() ||
+             left_of_polynomial(axis, rest) <= square(edge * found.noise_std[row++]);
+    });
   });
 }
 

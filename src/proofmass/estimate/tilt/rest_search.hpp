@@ -9,7 +9,7 @@ namespace proofmass::estimate {
 /// Intervals in which the accelerometer was at rest with a constant level. A search by noise level
 /// accepts a slow motion within a rest as drift; here a rest is split where the mean of half a
 /// second departs from that of the rest before it by more than noise and the drift of a sensor at
-/// rest.
+/// rest; a part whose level moves on is dropped.
 [[nodiscard]] signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options);
 
 /// For a moving base: drops quiet intervals that join smoothly to their neighbours, such as the

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/core/units.hpp"
 #include "proofmass/estimate/tilt/bias_change.hpp"
 #include "proofmass/estimate/tilt/record.hpp"
 
@@ -44,6 +45,20 @@ Note change_note(const BiasChange& change, double off_mps2) {
 
 }  // namespace
 
+Note uncalibrated_note(const std::optional<double>& off_mps2,
+                       double bias_std_mps2,
+                       double gravity_mps2) {
+  const std::string differs =
+      off_mps2 ? "at rest the force differs from gravity by " + decimal(*off_mps2) + " m/s², and "
+               : "";
+  return {Severity::warning,
+          differs +
+              "the accuracy of the calibration is unknown: each axis is assumed to be off by " +
+              decimal(bias_std_mps2) + " m/s², which tilts by " +
+              decimal(bias_std_mps2 / gravity_mps2 * deg_per_rad) + "°",
+          {Advice{"sensor"}, Advice{"bias-std"}}};
+}
+
 void find_rests(const TiltRecord& record,
                 const TiltOptions& options,
                 const std::vector<signal::Rest>& found,
@@ -57,37 +72,34 @@ void find_rests(const TiltRecord& record,
 bool judge_norm(TiltOptions& options, TiltSolution& solution) {
   if (options.bias_std_mps2) {
     solution.bias_std_mps2 = *options.bias_std_mps2;
+    if (*options.bias_std_mps2 > 0.0) solution.norm_std_mps2 = *options.bias_std_mps2;
     return false;
   }
   const ForceSpread spread(options);
-  double squares = 0.0, count = 0.0;
+  double squares = 0.0, variance = 0.0, count = 0.0;
   for (const TiltRest& rest : solution.rests) {
     if (!rest.norm_mps2) continue;
     squares += square(rest.norm_mps2->value - options.gravity_mps2.value);
+    variance += square(rest.norm_mps2->std);
     count += 1.0;
   }
   const double off = count > 0.0 ? std::sqrt(squares / count) : 0.0;
   if (spread.knows_calibration()) {
     const BiasChange change = bias_change(solution.rests, spread, options.gravity_mps2,
                                           stability_mps2(*options.calibration));
-    options.bias_std_mps2 = change.std_mps2;
+    options.bias_std_mps2 = solution.norm_std_mps2 = change.std_mps2;
     solution.notes.push_back(change_note(change, off));
-  } else if (off > 2.0 * options.gravity_mps2.std) {
-    options.bias_std_mps2 = off;
-    solution.notes.push_back(
-        {Severity::warning,
-         "at rest the force differs from gravity by " + decimal(off) +
-             " m/s², and the accuracy of the calibration is unknown: each axis is assumed to be "
-             "off by this amount; a sensor file gives a better value"});
   } else {
+    options.bias_std_mps2 =
+        uncalibrated_bias_std_mps2(solution.rests, spread, options.gravity_mps2);
+    std::optional<double> differs;
+    if (square(off) > 4.0 * (square(options.gravity_mps2.std) + variance / std::max(count, 1.0)))
+      differs = solution.norm_std_mps2 = off;
     solution.notes.push_back(
-        {Severity::warning,
-         "the accuracy of the calibration is unknown: standard deviations include only its noise, "
-         "while a bias of 0.1 m/s² tilts by 0.6 degrees",
-         {Advice{"sensor"}, Advice{"bias-std"}}});
+        uncalibrated_note(differs, *options.bias_std_mps2, options.gravity_mps2.value));
   }
-  solution.bias_std_mps2 = options.bias_std_mps2.value_or(0.0);
-  return options.bias_std_mps2.has_value();
+  solution.bias_std_mps2 = *options.bias_std_mps2;
+  return true;
 }
 
 void set_up(TiltSeries& series, std::size_t k, const Mat<3>& force) {

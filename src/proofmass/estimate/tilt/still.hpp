@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "proofmass/estimate/tilt/rest.hpp"
@@ -18,8 +19,15 @@ void set_up(TiltSeries& series, std::size_t k, const Mat<3>& force);
 
 /// Compares the norm of the force at rest with gravity. Without a calibration, the difference shows
 /// the size of the sensor's errors; with one, the possible change of the biases since then
-/// (tilt/bias_change.hpp). Returns whether it set the options' bias_std_mps2.
+/// (tilt/bias_change.hpp). Returns whether it set the options' bias_std_mps2. Sets the solution's
+/// norm_std_mps2, too.
 bool judge_norm(TiltOptions& options, TiltSolution& solution);
+
+/// That the accuracy of the calibration is unknown, and what is assumed; `off_mps2` is the
+/// departure of the norm at rest from gravity, if it is significant.
+[[nodiscard]] Note uncalibrated_note(const std::optional<double>& off_mps2,
+                                     double bias_std_mps2,
+                                     double gravity_mps2);
 
 /// An empty series of the record's length, with its rests.
 void make_series(const TiltRecord& record, TiltSolution& solution);
