@@ -90,6 +90,7 @@ TEST(LiveTiltCoverage, InMotionIsNinetyFivePercentOrMore) {
       for (const auto& axis : base.record.rate_radps)
         if (gyroscope) stream.channels.push_back(axis);
       LiveTiltOptions options;
+      options.tilt.bias_std_mps2 = 0.0;
       options.accelerometer = {"acc", 0, 1, 2};
       if (gyroscope) options.gyroscope = Triad{"gyr", 3, 4, 5};
       auto live = live_tilt(options).value();

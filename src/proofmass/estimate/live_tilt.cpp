@@ -9,9 +9,11 @@
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/live_columns.hpp"
+#include "proofmass/estimate/tilt/bias_change.hpp"
 #include "proofmass/estimate/tilt/live_filter.hpp"
 #include "proofmass/estimate/tilt/record.hpp"
 #include "proofmass/estimate/tilt/rest.hpp"
+#include "proofmass/estimate/tilt/still.hpp"
 #include "proofmass/estimate/wheel/live_epochs.hpp"
 
 namespace proofmass::estimate {
@@ -41,11 +43,21 @@ std::vector<LiveVector> vectors_of(const LiveTiltOptions& options) {
   return vectors;
 }
 
+// No rest is known in advance whose norm would show the biases of an uncalibrated sensor.
+LiveTiltOptions with_biases(LiveTiltOptions options, std::vector<Note>& notes) {
+  TiltOptions& tilt = options.tilt;
+  if (tilt.calibration || tilt.bias_std_mps2) return options;
+  tilt.bias_std_mps2 = uncalibrated_bias_std_mps2({}, ForceSpread(tilt), tilt.gravity_mps2);
+  notes.push_back(uncalibrated_note(std::nullopt, *tilt.bias_std_mps2, tilt.gravity_mps2.value));
+  notes.back().advice = {Advice{"sensor"}};  // a live estimate has no bias_std
+  return options;
+}
+
 class LiveTilt final : public LiveAnalysis {
  public:
   explicit LiveTilt(const LiveTiltOptions& options)
-      : options_(options),
-        spread_(options.tilt),
+      : options_(with_biases(options, notes_)),
+        spread_(options_.tilt),
         epochs_(vectors_of(options), {options.rate_hz, options.most_rate_hz}) {}
 
   [[nodiscard]] const std::vector<Channel>& columns() const override { return columns_; }
@@ -129,13 +141,13 @@ class LiveTilt final : public LiveAnalysis {
     return out;
   }
 
+  std::vector<Note> notes_;
   LiveTiltOptions options_;
   ForceSpread spread_;
   LiveEpochs epochs_;
   std::vector<Channel> columns_ = tilt_columns();
   std::vector<LiveEpoch> first_;
   std::optional<LiveTiltBank> bank_;
-  std::vector<Note> notes_;
 };
 
 }  // namespace

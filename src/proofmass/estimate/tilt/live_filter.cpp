@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "proofmass/core/chi_square.hpp"
+#include "proofmass/core/so3.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/tilt/epochs.hpp"
 #include "proofmass/estimate/tilt/motion.hpp"
@@ -11,15 +12,21 @@
 namespace proofmass::estimate {
 namespace {
 
-/// Averaging times of the force's scatter, the base's acceleration: the larger of the two counts,
-/// so that a slow acceleration is not forgotten while it passes through zero.
-constexpr double memory_s = 6.0, long_memory_s = 30.0;
+/// Averaging times of the force's scatter, the base's acceleration: the largest counts, so that a
+/// slow acceleration is not forgotten while it passes through zero, and with gyroscope one that
+/// begins after a rest is not taken for tilt.
+constexpr double memory_s = 6.0, long_memory_s = 30.0, short_memory_s = 1.0;
 /// Initial acceleration of the base, in m/s², and its decay time.
 constexpr double unknown_accel_mps2 = 1.0, unknown_fade_s = 2.0;
-/// Averaging time of the reference force, with and without gyroscope.
-constexpr double mean_memory_s = 2.0, free_mean_memory_s = 20.0;
+/// Averaging time of the reference force, with gyroscope for the 6 s and for the others, and
+/// without.
+constexpr double mean_memory_s = 2.0, long_mean_memory_s = 10.0, free_mean_memory_s = 20.0;
 /// Lower limits of the acceleration, relative to gravity, and of its correlation time.
 constexpr double least_accel = 2e-3, least_time_s = 0.05, longest_time_s = 2.0;
+/// Longest correlation time with gyroscope, from the low-frequency density.
+constexpr double longest_density_s = 0.4 * long_mean_memory_s;
+/// Blocks of the density; the first of them, each twice as long as the one before.
+constexpr double first_block_s = 0.25;
 /// Degrees of freedom of the scatter, as in base_accel().
 constexpr double effective_dof = 10.0;
 /// Initial angular acceleration of a base without gyroscope, rad/s²/√Hz: that of a hand.
@@ -56,6 +63,14 @@ double norm_of(const std::vector<LiveEpoch>& epochs, double gravity_mps2) {
   return std::abs(usual - gravity_mps2) < 0.03 * gravity_mps2 ? usual : gravity_mps2;
 }
 
+std::vector<BaseScatter> scatters(bool gyroscope) {
+  if (!gyroscope)
+    return {{memory_s, free_mean_memory_s, false}, {long_memory_s, free_mean_memory_s, false}};
+  return {{memory_s, mean_memory_s, true},
+          {long_memory_s, long_mean_memory_s, true},
+          {short_memory_s, long_mean_memory_s, true}};
+}
+
 std::size_t epochs_in(double time_s, double step_s) {
   return static_cast<std::size_t>(std::max(1L, std::lround(time_s / step_s)));
 }
@@ -77,12 +92,67 @@ double RunningCorrelation::time() const {
   return -1.0 / std::log(std::clamp(r, std::exp(-2.0), 0.999));
 }
 
+RunningDensity::RunningDensity(double step_s, double memory_s)
+    : step_s_(step_s), memory_s_(memory_s) {
+  double length_s = first_block_s;
+  for (Block& block : blocks_) {
+    block.length = epochs_in(length_s, step_s);
+    length_s *= 2.0;
+  }
+}
+
+void RunningDensity::turn(const Mat<3, 3>& R) {
+  for (Block& block : blocks_) block.sum = R * block.sum;
+}
+
+void RunningDensity::add(const Mat<3>& departure) {
+  const double fade = std::exp(-step_s_ / memory_s_);
+  square_ = fade * square_ + departure.squaredNorm();
+  weight_ = fade * weight_ + 1.0;
+  for (Block& block : blocks_) {
+    block.sum += departure;
+    if (++block.count < block.length) continue;
+    const auto length = static_cast<double>(block.length);
+    const double fade_block = std::exp(-length * step_s_ / memory_s_);
+    block.square = fade_block * block.square + block.sum.squaredNorm() / length;
+    block.weight = fade_block * block.weight + 1.0;
+    block.sum.setZero();
+    block.count = 0;
+  }
+}
+
+double RunningDensity::time_s() const {
+  double most = 0.0;
+  for (const Block& block : blocks_)
+    if (block.weight > 0.0 && square_ > 0.0)
+      most = std::max(most, block.square / block.weight / (square_ / weight_));
+  return 0.5 * step_s_ * most;
+}
+
+RunningNoise::RunningNoise(double step_s, double std_mps2)
+    : short_weight_(1.0 - std::exp(-step_s / short_memory_s)),
+      long_weight_(1.0 - std::exp(-step_s / memory_s)),
+      short_(square(std_mps2)),
+      long_(short_) {
+  before_.fill(Mat<3>::Constant(no_value));
+}
+
+void RunningNoise::add(const Mat<3>& force) {
+  const Mat<3> bend = force - 2.0 * before_[0] + before_[1];
+  before_ = {force, before_[0]};
+  if (!bend.allFinite()) return;
+  const double variance = bend.squaredNorm() / 18.0;  // three axes, six times each
+  short_ += short_weight_ * (variance - short_);
+  long_ += long_weight_ * (variance - long_);
+}
+
 LiveTiltFilter::LiveTiltFilter(const std::vector<LiveEpoch>& first, const LiveTiltOptions& options)
     : gyroscope_(options.gyroscope.has_value()),
       usual_step_s_(step_of(first)),
-      scatter_(memory_s, gyroscope_ ? mean_memory_s : free_mean_memory_s, gyroscope_),
-      long_scatter_(long_memory_s, gyroscope_ ? mean_memory_s : free_mean_memory_s, gyroscope_),
+      scatters_(scatters(gyroscope_)),
       correlation_(epochs_in(apart_s, usual_step_s_)),
+      density_(usual_step_s_, long_memory_s),
+      noise_(usual_step_s_, difference_std(first, 0)),
       apart_s_(static_cast<double>(epochs_in(apart_s, usual_step_s_)) * usual_step_s_),
       window_(epochs_in(options.lag_s, usual_step_s_)),
       times_s_(window_.lag() + 1) {
@@ -91,7 +161,7 @@ LiveTiltFilter::LiveTiltFilter(const std::vector<LiveEpoch>& first, const LiveTi
   known_.rate_bias_walk_radps_rts = options.tilt.rate_bias_walk_radps_rts;
   known_.rate_scale_std = options.tilt.rate_scale_std;
   motion_.gyroscope = gyroscope_;
-  motion_.reading_std_mps2 = std::max(1e-4 * known_.gravity_mps2, difference_std(first, 0));
+  motion_.reading_std_mps2 = std::max(1e-4 * known_.gravity_mps2, noise_.std_mps2());
   motion_.accel_time_s = least_time_s;
   motion_.drive = gyroscope_
                       ? std::clamp(difference_std(first, 1) * std::sqrt(usual_step_s_), 1e-5, 1e-2)
@@ -121,25 +191,30 @@ void LiveTiltFilter::read(const LiveEpoch& epoch) {
 void LiveTiltFilter::follow_motion() {
   const Mat<3> bias = gyroscope_ ? Mat<3>(state_.x.mean.tail<3>()) : Mat<3>::Zero();
   const Mat<3> rate = gyroscope_ ? Mat<3>(now_.rate_radps[1] - bias) : bias;
-  scatter_.turn(now_.step_s[1], rate);
-  long_scatter_.turn(now_.step_s[1], rate);
+  for (BaseScatter& scatter : scatters_) scatter.turn(now_.step_s[1], rate);
+  if (gyroscope_ && rate.allFinite()) density_.turn(rotation_by(Mat<3>(-now_.step_s[1] * rate)));
   unknown_ *= std::exp(-now_.step_s[1] / unknown_fade_s);
   const Mat<3>& f = now_.force_mps2[1];
+  noise_.add(f);
+  motion_.reading_std_mps2 = std::max(1e-4 * known_.gravity_mps2, noise_.std_mps2());
   if (!f.allFinite()) return;
-  const auto departure = scatter_.add(f, known_.gravity_mps2);
-  long_scatter_.add(f, known_.gravity_mps2);
-  correlation_.add(departure.mps2, usual_step_s_ / memory_s);
+  Mat<3, 3> accel_cov = Mat<3, 3>::Zero();
+  for (std::size_t i = 0; i < scatters_.size(); ++i) {
+    const Mat<3> departure = scatters_[i].add(f, known_.gravity_mps2).mps2;
+    if (i == 0) correlation_.add(departure, usual_step_s_ / memory_s);
+    if (i == 1 && gyroscope_) density_.add(departure);
+    const Mat<3, 3> cov = scatters_[i].covariance(known_.gravity_mps2, known_.norm_std_mps2);
+    if (cov.trace() > accel_cov.trace()) accel_cov = cov;
+  }
   double time_s = std::clamp(correlation_.time() * apart_s_, least_time_s, longest_time_s);
+  if (gyroscope_) time_s = std::max(time_s, std::min(density_.time_s(), longest_density_s));
   // As in base_accel(): the statistical uncertainty, and the part removed by the running mean.
   const double taken = 1.0 + time_s / (gyroscope_ ? mean_memory_s : free_mean_memory_s);
   const double wider = student_t_quantile(0.975, effective_dof) / 1.959964;
   motion_.accel_time_s = time_s * taken;
-  const Mat<3, 3> late = scatter_.covariance(known_.gravity_mps2, known_.norm_std_mps2),
-                  long_ago = long_scatter_.covariance(known_.gravity_mps2, known_.norm_std_mps2);
-  now_.accel_cov_m2ps4[1] =
-      wider * wider * taken * (late.trace() > long_ago.trace() ? late : long_ago) +
-      square(unknown_accel_mps2) * unknown_ * Mat<3, 3>::Identity() +
-      least_cov(known_.gravity_mps2);
+  now_.accel_cov_m2ps4[1] = wider * wider * taken * accel_cov +
+                            square(unknown_accel_mps2) * unknown_ * Mat<3, 3>::Identity() +
+                            least_cov(known_.gravity_mps2);
 }
 
 void LiveTiltFilter::step(const LiveEpoch& epoch) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -27,6 +30,42 @@ class RunningCorrelation {
   std::vector<Mat<3>> ring_;
   std::size_t added_ = 0;
   double product_ = 0.0, square_ = 0.0;
+};
+
+/// Correlation time of a first-order process with the variance and the low-frequency density of the
+/// departures, as in base_accel(): from sums over blocks of 1/4 to 4 s, each of which forgets.
+class RunningDensity {
+ public:
+  RunningDensity(double step_s, double memory_s);
+  void add(const Mat<3>& departure);
+  /// The sums are of vectors in the sensor's axes: rotates them with it.
+  void turn(const Mat<3, 3>& R);
+  [[nodiscard]] double time_s() const;
+
+ private:
+  struct Block {
+    std::size_t length = 1, count = 0;
+    Mat<3> sum = Mat<3>::Zero();
+    double square = 0.0, weight = 0.0;  ///< fading sums
+  };
+  double step_s_, memory_s_;
+  std::array<Block, 5> blocks_;
+  double square_ = 0.0, weight_ = 0.0;
+};
+
+/// White noise of a measurement, vibration included: from second differences, which rotation hardly
+/// enters, over the last second or the last 6 s, whichever gives more.
+class RunningNoise {
+ public:
+  RunningNoise(double step_s, double std_mps2);
+  /// NaN if missing.
+  void add(const Mat<3>& force);
+  [[nodiscard]] double std_mps2() const { return std::sqrt(std::max(short_, long_)); }
+
+ private:
+  double short_weight_, long_weight_;
+  double short_, long_;  ///< variances, (m/s²)²
+  std::array<Mat<3>, 2> before_;
 };
 
 class LiveTiltFilter {
@@ -61,9 +100,11 @@ class LiveTiltFilter {
   TiltEpochs now_;  ///< two epochs: 0 the first, 1 any later
   TiltKnown known_;
   TiltMotion motion_;
-  BaseScatter scatter_, long_scatter_;
+  std::vector<BaseScatter> scatters_;  ///< over the last 6 s, 30 s, and with gyroscope 1 s
   double unknown_ = 1.0;  ///< remaining share of the initial uncertainty of the base's acceleration
   RunningCorrelation correlation_;
+  RunningDensity density_;
+  RunningNoise noise_;
   double apart_s_ = 0.1;
   FilterState<9> state_;
   StepOf<TiltModel> step_;
