@@ -147,6 +147,11 @@ BaseAccel base_accel_over(const TiltEpochs& epochs,
 
 }  // namespace
 
+double mean_memory_s(double tilting_std_radps, double gravity_mps2) {
+  constexpr double shortest_s = 2.0, longest_s = 10.0, rotated_mps2 = 0.1;
+  return std::clamp(rotated_mps2 / (gravity_mps2 * tilting_std_radps), shortest_s, longest_s);
+}
+
 void BaseScatter::turn(double step_s, const Mat<3>& rate_radps) {
   since_s_ += step_s;
   if (!gyroscope_) return;

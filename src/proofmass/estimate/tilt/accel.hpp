@@ -8,6 +8,11 @@
 // Acceleration of the base, from the scatter of the force.
 namespace proofmass::estimate {
 
+/// Averaging time of m below with gyroscope, 2 to 10 s: the longer, the slower the accelerations
+/// that are seen; but the uncertainty of the gyroscope's bias may rotate gravity by 0.1 m/s² in it
+/// at most. `tilting_std_radps`: of the bias across gravity, each axis.
+[[nodiscard]] double mean_memory_s(double tilting_std_radps, double gravity_mps2);
+
 /// m and ⟨…⟩ below, epoch by epoch.
 class BaseScatter {
  public:

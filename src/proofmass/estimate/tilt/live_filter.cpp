@@ -20,7 +20,7 @@ constexpr double memory_s = 6.0, long_memory_s = 30.0, short_memory_s = 1.0;
 constexpr double unknown_accel_mps2 = 1.0, unknown_fade_s = 2.0;
 /// Averaging time of the reference force, with gyroscope for the 6 s and for the others, and
 /// without.
-constexpr double mean_memory_s = 2.0, long_mean_memory_s = 10.0, free_mean_memory_s = 20.0;
+constexpr double short_mean_memory_s = 2.0, long_mean_memory_s = 10.0, free_mean_memory_s = 20.0;
 /// Lower limits of the acceleration, relative to gravity, and of its correlation time.
 constexpr double least_accel = 2e-3, least_time_s = 0.05, longest_time_s = 2.0;
 /// Longest correlation time with gyroscope, from the low-frequency density.
@@ -66,7 +66,7 @@ double norm_of(const std::vector<LiveEpoch>& epochs, double gravity_mps2) {
 std::vector<BaseScatter> scatters(bool gyroscope) {
   if (!gyroscope)
     return {{memory_s, free_mean_memory_s, false}, {long_memory_s, free_mean_memory_s, false}};
-  return {{memory_s, mean_memory_s, true},
+  return {{memory_s, short_mean_memory_s, true},
           {long_memory_s, long_mean_memory_s, true},
           {short_memory_s, long_mean_memory_s, true}};
 }
@@ -209,7 +209,7 @@ void LiveTiltFilter::follow_motion() {
   double time_s = std::clamp(correlation_.time() * apart_s_, least_time_s, longest_time_s);
   if (gyroscope_) time_s = std::max(time_s, std::min(density_.time_s(), longest_density_s));
   // As in base_accel(): the statistical uncertainty, and the part removed by the running mean.
-  const double taken = 1.0 + time_s / (gyroscope_ ? mean_memory_s : free_mean_memory_s);
+  const double taken = 1.0 + time_s / (gyroscope_ ? short_mean_memory_s : free_mean_memory_s);
   const double wider = student_t_quantile(0.975, effective_dof) / 1.959964;
   motion_.accel_time_s = time_s * taken;
   now_.accel_cov_m2ps4[1] = wider * wider * taken * accel_cov +

@@ -109,14 +109,23 @@ TiltMotion fit_tilt_motion(const TiltEpochs& epochs,
   return motion;
 }
 
-Mat<3> rate_bias_of(const TiltEpochs& epochs, const TiltKnown& known, const TiltMotion& motion) {
+RateBias rate_bias_of(const TiltEpochs& epochs, const TiltKnown& known, const TiltMotion& motion) {
   const TiltModel model(epochs, known, motion);
-  Mat<3> bias = Mat<3>::Zero();
+  RateBias bias;
+  Mat<3, 3> cov = Mat<3, 3>::Zero();  // of the filter at the end: the bias hardly changes
+  double across = 0.0;                // of gravity, mean over the recording
   smooth(
-      model, model.start(), tilt_gate, [](std::size_t, const auto&) {},
+      model, model.start(), tilt_gate,
+      [&](std::size_t, const auto& step) {
+        cov = step.filtered.cov.template bottomRightCorner<3, 3>();
+      },
       [&](std::size_t k, const auto& step, const BackwardInformation<9>& later) {
-        if (k == model.size() / 2) bias = later.mean(step.filtered).template tail<3>();
+        const Mat<9> x = later.mean(step.filtered);
+        const Mat<3> up = x.template head<3>().normalized();
+        across += 0.5 * (cov.trace() - up.dot(cov * up)) / static_cast<double>(model.size());
+        if (k == model.size() / 2) bias.mean_radps = x.template tail<3>();
       });
+  bias.tilting_std_radps = std::sqrt(std::max(0.0, across));
   return bias;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "proofmass/estimate/tilt/accel.hpp"
 #include "proofmass/estimate/tilt/model.hpp"
 
@@ -27,10 +29,16 @@ inline constexpr double usual_rate_noise_radps_rthz = 1e-3;
                                          const BaseAccel& accel,
                                          bool gyroscope);
 
+struct RateBias {
+  Mat<3> mean_radps = Mat<3>::Zero();
+  /// Standard deviation of the rotation of gravity in sensor axes that it leaves, each axis.
+  double tilting_std_radps = std::numeric_limits<double>::infinity();
+};
+
 /// The gyroscope's bias in the middle of the recording, given all of it.
-[[nodiscard]] Mat<3> rate_bias_of(const TiltEpochs& epochs,
-                                  const TiltKnown& known,
-                                  const TiltMotion& motion);
+[[nodiscard]] RateBias rate_bias_of(const TiltEpochs& epochs,
+                                    const TiltKnown& known,
+                                    const TiltMotion& motion);
 
 /// Runs filter and smoother and fills series, consistency, final angles and bias.
 void run_tilt(const TiltEpochs& epochs,
