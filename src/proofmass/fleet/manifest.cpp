@@ -151,38 +151,70 @@ std::string Job::id() const {
   return text;
 }
 
-Result<std::vector<std::vector<std::string>>> csv_fields(std::string_view text) {
-  const std::string_view head = text.substr(0, text.find('\n'));
+namespace {
+
+// The rows of a table, character by character (RFC 4180, with any separator).
+class TableRows {
+ public:
+  explicit TableRows(char separator) : separator_(separator) {}
+
+  /// `next`: the character after it, 0 at the end. Returns whether that was taken, too.
+  bool take(char c, char next) {
+    if (c == '"' && quoted_ && next == '"') {
+      row_.back() += c;
+      return true;
+    }
+    if (c == '"' && (quoted_ || row_.back().empty()))
+      quoted_ = !quoted_;
+    else if (quoted_)
+      row_.back() += c;
+    else
+      take_plain(c);
+    return false;
+  }
+
+  void end_row() {
+    if (row_.size() > 1 || !row_.front().empty()) table_.push_back(std::move(row_));
+    row_.assign(1, {});
+  }
+  [[nodiscard]] bool is_quoted() const { return quoted_; }
+  Table finish() {
+    end_row();
+    return std::move(table_);
+  }
+
+ private:
+  void take_plain(char c) {
+    if (c == separator_)
+      row_.emplace_back();
+    else if (c == '\n')
+      end_row();
+    else if (c != '\r')
+      row_.back() += c;
+  }
+
+  char separator_;
+  Table table_;
+  std::vector<std::string> row_ = std::vector<std::string>(1);
+  bool quoted_ = false;
+};
+
+char separator_of(std::string_view head) {
   char separator = ',';
   for (const char candidate : {';', '\t'})
     if (std::ranges::count(head, candidate) > std::ranges::count(head, separator))
       separator = candidate;
-  Table table;
-  std::vector<std::string> row(1);
-  bool quoted = false;
-  const auto end_row = [&] {
-    if (row.size() > 1 || !row.front().empty()) table.push_back(std::move(row));
-    row.assign(1, {});
-  };
-  for (std::size_t k = 0; k < text.size(); ++k) {
-    const char c = text[k];
-    const bool next_is_quote = k + 1 < text.size() && text[k + 1] == '"';
-    if (quoted && c == '"' && next_is_quote) {
-      row.back() += text[++k];
-    } else if (c == '"' && (quoted || row.back().empty())) {
-      quoted = !quoted;
-    } else if (quoted) {
-      row.back() += c;
-    } else if (c == separator) {
-      row.emplace_back();
-    } else if (c == '\n') {
-      end_row();
-    } else if (c != '\r') {
-      row.back() += c;
-    }
-  }
-  end_row();
-  if (quoted) return Error{Errc::corrupt, "a quote is opened and not closed"};
+  return separator;
+}
+
+}  // namespace
+
+Result<std::vector<std::vector<std::string>>> csv_fields(std::string_view text) {
+  TableRows rows(separator_of(text.substr(0, text.find('\n'))));
+  for (std::size_t k = 0; k < text.size(); ++k)
+    if (rows.take(text[k], k + 1 < text.size() ? text[k + 1] : '\0')) ++k;
+  if (rows.is_quoted()) return Error{Errc::corrupt, "a quote is opened and not closed"};
+  const Table table = rows.finish();
   for (std::size_t k = 1; k < table.size(); ++k)
     if (table[k].size() != table.front().size())
       return Error{Errc::corrupt, fmt::format("row {}: {} fields, but the head has {}", k,

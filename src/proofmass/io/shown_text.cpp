@@ -1,27 +1,10 @@
 #include "proofmass/io/shown_text.hpp"
 
+#include "proofmass/core/utf8.hpp"
 #include "proofmass/io/cell.hpp"
 
 namespace proofmass::io {
 namespace {
-
-/// Length of the UTF-8 character at the beginning of a text; 0 if it is invalid.
-std::size_t character_bytes(std::string_view text) {
-  const auto lead = static_cast<unsigned char>(text[0]);
-  if (lead < 0x80) return 1;
-  const std::size_t bytes = lead < 0xC2   ? 0
-                            : lead < 0xE0 ? 2
-                            : lead < 0xF0 ? 3
-                            : lead < 0xF5 ? 4
-                                          : 0;
-  if (bytes == 0 || text.size() < bytes) return 0;
-  for (std::size_t i = 1; i < bytes; ++i)
-    if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) return 0;
-  const auto second = static_cast<unsigned char>(text[1]);
-  const bool is_overlong = (lead == 0xE0 && second < 0xA0) || (lead == 0xF0 && second < 0x90);
-  const bool is_none = (lead == 0xED && second >= 0xA0) || (lead == 0xF4 && second >= 0x90);
-  return is_overlong || is_none ? 0 : bytes;
-}
 
 /// True if a UTF-8 character is a control character, not a visible one.
 bool is_control(std::string_view character) {

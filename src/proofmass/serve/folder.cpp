@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "proofmass/serve/utf8.hpp"
+#include "proofmass/core/utf8.hpp"
 
 namespace proofmass::serve {
 namespace {

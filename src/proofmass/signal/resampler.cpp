@@ -137,31 +137,40 @@ std::vector<double> Resampler::linear(View<double> values) const {
   return out;
 }
 
+// By the four samples around the place, or the four at the end, of a segment from `begin` to `end`;
+// by two if it has fewer, or the stamps are too uneven.
+double Resampler::curved(View<double> values,
+                         const Place& place,
+                         std::size_t begin,
+                         std::size_t end) const {
+  const auto& [before, fraction] = place;
+  const double straight = along(values[before], values[before + 1], fraction);
+  if (end - begin < 4) return straight;
+  const std::size_t first = std::clamp(before == 0 ? 0 : before - 1, begin, end - 4);
+  const std::array<double, 4> at{times_[first], times_[first + 1], times_[first + 2],
+                                 times_[first + 3]};
+  if (!are_near_even(at)) return straight;
+  const std::array<double, 4> four{values[first], values[first + 1], values[first + 2],
+                                   values[first + 3]};
+  const double t = along(times_[before], times_[before + 1], fraction);
+  const double value = lagrange(at, four, t);
+  return std::isfinite(value) ? value : straight;
+}
+
 std::vector<double> Resampler::cubic(View<double> values, const std::vector<Place>& places) const {
   std::vector<double> out;
   out.reserve(places.size());
   auto after = first_after_.begin();
-  for (const auto& [before, fraction] : places) {
-    if (std::isnan(fraction) || fraction == 0.0) {
-      out.push_back(std::isnan(fraction) ? nan : values[before]);
+  for (const Place& place : places) {
+    if (std::isnan(place.fraction) || place.fraction == 0.0) {
+      out.push_back(std::isnan(place.fraction) ? nan : values[place.before]);
       continue;
     }
-    // The four samples around the time, or the four at the end, of the segment without gaps.
-    while (after != first_after_.end() && *after <= before) ++after;
+    // The segment without gaps.
+    while (after != first_after_.end() && *after <= place.before) ++after;
     const std::size_t begin = after == first_after_.begin() ? 0 : *std::prev(after);
     const std::size_t end = after == first_after_.end() ? values.size() : *after;
-    const double straight = along(values[before], values[before + 1], fraction);
-    out.push_back(straight);
-    if (end - begin < 4) continue;
-    const std::size_t first = std::clamp(before == 0 ? 0 : before - 1, begin, end - 4);
-    const std::array<double, 4> at{times_[first], times_[first + 1], times_[first + 2],
-                                   times_[first + 3]};
-    if (!are_near_even(at)) continue;
-    const std::array<double, 4> four{values[first], values[first + 1], values[first + 2],
-                                     values[first + 3]};
-    const double t = along(times_[before], times_[before + 1], fraction);
-    const double curved = lagrange(at, four, t);
-    if (std::isfinite(curved)) out.back() = curved;
+    out.push_back(curved(values, place, begin, end));
   }
   return out;
 }

@@ -59,6 +59,10 @@ class Resampler {
   [[nodiscard]] std::vector<double> linear(View<double> values) const;
   [[nodiscard]] std::vector<double> cubic(View<double> values,
                                           const std::vector<Place>& places) const;
+  [[nodiscard]] double curved(View<double> values,
+                              const Place& place,
+                              std::size_t begin,
+                              std::size_t end) const;
   [[nodiscard]] std::vector<double> sinc(View<double> values) const;
   [[nodiscard]] std::vector<double> mean(View<double> values) const;
   [[nodiscard]] std::vector<double> on_own_grid(View<double> values) const;

@@ -26,24 +26,18 @@ constexpr double usual_longest_s = 2.0, longest_of_memory = 0.4;
 // ratio of their variances on, they may be rotation.
 constexpr double plainly_more = 1.25;
 
-// Departures of the force, rotated to one static frame for the autocorrelation.
-struct Departures {
-  std::vector<Mat<3>> vectors;
-  std::vector<double> time_s;
-};
-
 // Lag at which the pooled autocorrelation has fallen to 1/e.
-double correlation_time(const Departures& found, double step_s, double longest_s) {
-  const std::size_t size = found.vectors.size();
+double correlation_time(const std::vector<Mat<3>>& departures, double step_s, double longest_s) {
+  const std::size_t size = departures.size();
   double zero = 0.0;
-  for (const Mat<3>& v : found.vectors) zero += v.squaredNorm();
+  for (const Mat<3>& v : departures) zero += v.squaredNorm();
   if (size < 3 || !(zero > 0.0)) return step_s;
   zero /= static_cast<double>(size);
   double last = 1.0;
   const auto most = static_cast<std::size_t>(std::min(longest_s / step_s, 2000.0));
   for (std::size_t lag = 1; lag <= most && lag < size / 2; ++lag) {
     double sum = 0.0;
-    for (std::size_t k = lag; k < size; ++k) sum += found.vectors[k].dot(found.vectors[k - lag]);
+    for (std::size_t k = lag; k < size; ++k) sum += departures[k].dot(departures[k - lag]);
     const double r = sum / (static_cast<double>(size - lag) * zero);
     constexpr double target = 0.36787944117144233;
     if (r <= target)
@@ -57,12 +51,11 @@ double correlation_time(const Departures& found, double step_s, double longest_s
 // by twice the variance: the correlation time of a first-order process whose density is as large.
 // It is the one that counts where vibration dominates the variance, and the autocorrelation falls
 // to 1/e within a sample.
-double time_of_density(const Departures& found, double step_s, double longest_s) {
+double time_of_density(std::vector<Mat<3>> sums, double step_s, double longest_s) {
   constexpr std::size_t fewest = 8;
-  const std::size_t size = found.vectors.size();
-  std::vector<Mat<3>> sums = found.vectors;
+  const auto size = static_cast<double>(sums.size());
   double variance = 0.0, time_s = 0.0;
-  for (const Mat<3>& v : sums) variance += v.squaredNorm() / static_cast<double>(size);
+  for (const Mat<3>& v : sums) variance += v.squaredNorm() / size;
   for (std::size_t length = 1; sums.size() >= fewest && variance > 0.0; length *= 2) {
     const double span = static_cast<double>(length);
     if (span * step_s > longest_s) break;
@@ -83,65 +76,102 @@ double largest_eigenvalue(const Mat<3, 3>& S) {
   return size * std::pow(four.squaredNorm(), 0.125);
 }
 
+// What the epochs in motion show.
+class MotionEvidence {
+ public:
+  /// The force of epoch k with its departure; `back` rotates it to a static frame, common to all.
+  void add(std::size_t k,
+           const Mat<3>& force,
+           const BaseScatter::Departure& departure,
+           const Mat<3, 3>& back) {
+    if (departure.since_s) steps_s_.push_back(*departure.since_s);
+    const auto axis = static_cast<Eigen::Index>(k % 3);
+    if (last_) differences_.push_back(force(axis) - (*last_)(axis));
+    departures_.emplace_back(back * departure.mps2);
+  }
+  /// The force of every epoch, at rest too.
+  void set_last(const Mat<3>& force) { last_ = force; }
+  void add(const BaseScatter::Across& across) {
+    found_ += across.found;
+    explained_ += across.explained;
+    epochs_ += 1.0;
+  }
+
+  [[nodiscard]] double perhaps_rotation_mps2() const {
+    return found_ > plainly_more * explained_ ? std::sqrt((found_ - explained_) / (2.0 * epochs_))
+                                              : 0.0;
+  }
+  [[nodiscard]] double time_s(bool gyroscope, double mean_memory_s) const {
+    const double step_s = median(steps_s_).value_or(0.01);
+    const double longest_s = std::max(usual_longest_s, longest_of_memory * mean_memory_s);
+    const double correlated_s =
+        std::max(correlation_time(departures_, step_s, longest_s), 0.5 * step_s);
+    return gyroscope ? std::max(correlated_s, time_of_density(departures_, step_s, longest_s))
+                     : correlated_s;
+  }
+  [[nodiscard]] double reading_std_mps2() const {
+    return std::numbers::sqrt2 / 2.0 * robust_std(differences_).value_or(0.0);
+  }
+
+ private:
+  std::vector<Mat<3>> departures_;
+  std::vector<double> steps_s_, differences_;
+  std::optional<Mat<3>> last_;
+  double found_ = 0.0, explained_ = 0.0, epochs_ = 0.0;
+};
+
+// The rotation of an epoch's step without the gyroscope's bias; zero without gyroscope.
+Mat<3> rate_of(const TiltEpochs& epochs, const Mat<3>& rate_bias, std::size_t k) {
+  return epochs.rate_radps.empty() ? Mat<3>::Zero() : Mat<3>(epochs.rate_radps[k] - rate_bias);
+}
+
+// The scatter of the first seconds, which applies from the start on.
+BaseScatter first_scatter(const TiltEpochs& epochs,
+                          const Mat<3>& rate_bias,
+                          double gravity_mps2,
+                          double memory_s,
+                          double mean_memory_s) {
+  BaseScatter scatter(memory_s, mean_memory_s, !epochs.rate_radps.empty());
+  double early_s = 0.0;
+  for (std::size_t k = 0; k < epochs.step_s.size() && early_s < memory_s; ++k) {
+    early_s += epochs.step_s[k];
+    scatter.turn(epochs.step_s[k], rate_of(epochs, rate_bias, k));
+    const Mat<3>& f = epochs.force_mps2[k];
+    if (f.allFinite()) scatter.add(f, gravity_mps2);
+  }
+  scatter.restart();
+  return scatter;
+}
+
 BaseAccel base_accel_over(const TiltEpochs& epochs,
                           const Mat<3>& rate_bias,
                           const TiltKnown& known,
                           double memory_s,
                           double mean_memory_s) {
-  BaseAccel out;
   const bool gyroscope = !epochs.rate_radps.empty();
-  BaseScatter scatter(memory_s, mean_memory_s, gyroscope);
-  Departures departures;
+  const double G = known.gravity_mps2;
+  const Mat<3, 3> least = square(least_accel * G) * Mat<3, 3>::Identity();
+  BaseScatter scatter = first_scatter(epochs, rate_bias, G, memory_s, mean_memory_s);
+  MotionEvidence motion;
   Mat<3, 3> back = Mat<3, 3>::Identity();
-  std::vector<double> steps, differences;
-  const Mat<3>* last = nullptr;
-  const Mat<3, 3> least = square(least_accel * known.gravity_mps2) * Mat<3, 3>::Identity();
-  // The estimate of the first seconds applies from the start on.
-  double early_s = 0.0;
-  double found = 0.0, explained = 0.0, moving = 0.0;
-  for (std::size_t k = 0; k < epochs.step_s.size() && early_s < memory_s; ++k) {
-    const double h = epochs.step_s[k];
-    early_s += h;
-    scatter.turn(h, gyroscope ? Mat<3>(epochs.rate_radps[k] - rate_bias) : Mat<3>::Zero());
-    const Mat<3>& f = epochs.force_mps2[k];
-    if (f.allFinite()) scatter.add(f, known.gravity_mps2);
-  }
-  scatter.restart();
+  BaseAccel out;
   for (std::size_t k = 0; k < epochs.step_s.size(); ++k) {
-    const double h = epochs.step_s[k];
-    if (gyroscope) {
-      const Mat<3> rate = epochs.rate_radps[k] - rate_bias;
-      if (rate.allFinite()) back = back * rotation_by(Mat<3>(-h * rate)).transpose();
-      scatter.turn(h, rate);
-    } else {
-      scatter.turn(h, Mat<3>::Zero());
-    }
+    const Mat<3> rate = rate_of(epochs, rate_bias, k);
+    if (rate.allFinite()) back = back * rotation_by(Mat<3>(-epochs.step_s[k] * rate)).transpose();
+    scatter.turn(epochs.step_s[k], rate);
+    const bool rests = epochs.resting[k] != 0;
     const Mat<3>& f = epochs.force_mps2[k];
     if (f.allFinite()) {
-      const auto departure = scatter.add(f, known.gravity_mps2);
-      if (epochs.resting[k] == 0) {
-        if (departure.since_s) steps.push_back(*departure.since_s);
-        if (last) differences.push_back((f - *last)(static_cast<Eigen::Index>(k % 3)));
-        departures.vectors.emplace_back(back * departure.mps2);
-      }
-      last = &f;
+      const auto departure = scatter.add(f, G);
+      if (!rests) motion.add(k, f, departure, back);
+      motion.set_last(f);
     }
-    if (!gyroscope && epochs.resting[k] == 0) {
-      const auto across = scatter.across(known.gravity_mps2, known.norm_std_mps2);
-      found += across.found;
-      explained += across.explained;
-      ++moving;
-    }
-    out.cov_m2ps4.push_back(scatter.covariance(known.gravity_mps2, known.norm_std_mps2) + least);
+    if (!gyroscope && !rests) motion.add(scatter.across(G, known.norm_std_mps2));
+    out.cov_m2ps4.push_back(scatter.covariance(G, known.norm_std_mps2) + least);
   }
-  if (found > plainly_more * explained)
-    out.perhaps_rotation_mps2 = std::sqrt((found - explained) / (2.0 * moving));
-  const double step_s = median(steps).value_or(0.01);
-  const double longest_s = std::max(usual_longest_s, longest_of_memory * mean_memory_s);
-  out.time_s = std::max(correlation_time(departures, step_s, longest_s), 0.5 * step_s);
-  if (gyroscope) out.time_s = std::max(out.time_s, time_of_density(departures, step_s, longest_s));
-  out.reading_std_mps2 = std::max(
-      1e-4 * known.gravity_mps2, std::numbers::sqrt2 / 2.0 * robust_std(differences).value_or(0.0));
+  out.perhaps_rotation_mps2 = motion.perhaps_rotation_mps2();
+  out.time_s = motion.time_s(gyroscope, mean_memory_s);
+  out.reading_std_mps2 = std::max(1e-4 * G, motion.reading_std_mps2());
   return out;
 }
 

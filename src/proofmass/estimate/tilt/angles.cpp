@@ -100,56 +100,83 @@ TiltAngles angles_of(const Mat<3>& force, const Mat<3, 3>& cov) {
   return out;
 }
 
+namespace {
+
+// A force of which some axes are missing (NaN).
+struct PartOfForce {
+  Mat<3> force;
+  Mat<3, 3> cov;
+  Uncertain gravity;
+
+  [[nodiscard]] bool has(int axis) const { return std::isfinite(force(axis)); }
+  /// Covariance without an axis that is 0 by assumption.
+  [[nodiscard]] Mat<3, 3> cov_without(int axis) const {
+    Mat<3, 3> known = cov;
+    known.row(axis).setZero();
+    known.col(axis).setZero();
+    return known;
+  }
+  /// Norm of the force across x.
+  [[nodiscard]] double across() const {
+    return std::sqrt(gravity.value * gravity.value - force.x() * force.x());
+  }
+};
+
+void set_pitch_of(const PartOfForce& part, TiltAngles& out) {
+  const Mat<3>& f = part.force;
+  if (part.has(0) && out.elevation_rad[0])
+    out.pitch_rad = Uncertain{-out.elevation_rad[0]->value, out.elevation_rad[0]->std};
+  else if (part.has(0))
+    out.why_no_pitch = "the x axis is nearly vertical, where its output is insensitive to tilt";
+  else if (part.has(1) && part.has(2))
+    out.why_no_pitch =
+        "without an x axis only its magnitude is known, " +
+        degrees(std::acos(std::min(1.0, std::hypot(f.y(), f.z()) / part.gravity.value)));
+  else
+    out.why_no_pitch = "needs the x axis, or y and z for its magnitude";
+}
+
+// sin roll = f_y / √(g² − f_x²), with z upwards.
+void set_roll_by_y(const PartOfForce& part, TiltAngles& out) {
+  const double across = part.across();
+  const double sine = part.force.y() / across;
+  const double cosine = std::sqrt(std::max(0.0, 1.0 - sine * sine));
+  const Mat<3> gradient{sine * part.force.x() / across, 1.0, 0.0};
+  const double std = std::hypot(std_along(gradient, part.cov_without(2)),
+                                sine * part.gravity.value / across * part.gravity.std) /
+                     (across * std::max(cosine, 1e-9));
+  if (cosine > 2.0 * std && std < largest_std_rad)
+    out.roll_rad = Uncertain{std::asin(sine), std};
+  else
+    out.why_no_roll = "the y axis is nearly vertical, where its output is insensitive to tilt";
+}
+
+void set_roll_of(const PartOfForce& part, TiltAngles& out) {
+  const Mat<3>& f = part.force;
+  if (part.has(1) && part.has(2)) return set_roll(out, {0.0, f.y(), f.z()}, part.cov_without(0));
+  if (part.has(0) && part.has(1) && out.pitch_rad) return set_roll_by_y(part, out);
+  if (!part.has(0) || !part.has(2)) {
+    out.why_no_roll = "it takes the y axis and another";
+    return;
+  }
+  out.why_no_roll = "without a y axis only its magnitude is known";
+  if (out.pitch_rad)
+    out.why_no_roll += ", " + degrees(std::acos(std::clamp(f.z() / part.across(), -1.0, 1.0)));
+}
+
+}  // namespace
+
 TiltAngles angles_of_some(const Mat<3>& force,
                           const Mat<3, 3>& cov,
                           const Uncertain& gravity_mps2) {
   if (force.allFinite()) return angles_of(force, cov);
+  const PartOfForce part{force, cov, gravity_mps2};
   TiltAngles out;
   for (int i = 0; i < 3; ++i)
-    if (std::isfinite(force(i)))
+    if (part.has(i))
       out.elevation_rad[static_cast<std::size_t>(i)] = elevation(force(i), cov(i, i), gravity_mps2);
-  const bool x = std::isfinite(force.x()), y = std::isfinite(force.y()),
-             z = std::isfinite(force.z());
-  const double g = gravity_mps2.value;
-  if (x && out.elevation_rad[0])
-    out.pitch_rad = Uncertain{-out.elevation_rad[0]->value, out.elevation_rad[0]->std};
-  else if (x)
-    out.why_no_pitch = "the x axis is nearly vertical, where its output is insensitive to tilt";
-  else if (y && z)
-    out.why_no_pitch = "without an x axis only its magnitude is known, " +
-                       degrees(std::acos(std::min(1.0, std::hypot(force.y(), force.z()) / g)));
-  else
-    out.why_no_pitch = "needs the x axis, or y and z for its magnitude";
-  if (y && z) {
-    Mat<3, 3> known = cov;
-    known.row(0).setZero();
-    known.col(0).setZero();
-    set_roll(out, {0.0, force.y(), force.z()}, known);
-  } else if (x && y && out.pitch_rad) {
-    // sin roll = f_y / √(g² − f_x²), with z upwards
-    const double across = std::sqrt(g * g - force.x() * force.x());
-    const double sine = force.y() / across;
-    const double cosine = std::sqrt(std::max(0.0, 1.0 - sine * sine));
-    const Mat<3> gradient{sine * force.x() / across, 1.0, 0.0};
-    Mat<3, 3> known = cov;
-    known.row(2).setZero();
-    known.col(2).setZero();
-    const double std =
-        std::hypot(std_along(gradient, known), sine * g / across * gravity_mps2.std) /
-        (across * std::max(cosine, 1e-9));
-    if (cosine > 2.0 * std && std < largest_std_rad)
-      out.roll_rad = Uncertain{std::asin(sine), std};
-    else
-      out.why_no_roll = "the y axis is nearly vertical, where its output is insensitive to tilt";
-  } else if (x && z) {
-    out.why_no_roll = "without a y axis only its magnitude is known";
-    if (out.pitch_rad) {
-      const double across = std::sqrt(g * g - force.x() * force.x());
-      out.why_no_roll += ", " + degrees(std::acos(std::clamp(force.z() / across, -1.0, 1.0)));
-    }
-  } else {
-    out.why_no_roll = "it takes the y axis and another";
-  }
+  set_pitch_of(part, out);
+  set_roll_of(part, out);
   return out;
 }
 

@@ -231,31 +231,51 @@ bool has_even_tabs(const std::vector<Line>& sample) {
       counts, [&](const auto& entry) { return entry.first > 0 && entry.second * 10 >= lines * 9; });
 }
 
+/// The numbers of each column, those with a comma and the others.
+class NumbersByComma {
+ public:
+  explicit NumbersByComma(std::size_t columns) : plain_(columns), marked_(columns) {}
+
+  /// False if the comma of a number cannot group thousands.
+  bool take(std::size_t column, std::string_view field) {
+    const Cell cell = read_cell(field, ',');
+    if (cell.kind != CellKind::number) return true;
+    const bool has_comma = field.find(',') != std::string_view::npos;
+    if (has_comma && without_grouping(field, '.').empty()) return false;
+    if (cell.value != 0.0) (has_comma ? marked_ : plain_)[column].push_back(std::abs(cell.value));
+    return true;
+  }
+
+  /// True if some column has both, and wherever it has, those with a comma, as decimals, are nearer
+  /// to a thousandth of the others than to them.
+  [[nodiscard]] bool continue_as_thousands() const {
+    std::size_t continued = 0;
+    for (std::size_t c = 0; c < plain_.size(); ++c) {
+      if (plain_[c].empty() || marked_[c].empty()) continue;
+      const double step = std::log10(*median(plain_[c]) / *median(marked_[c]));
+      if (std::abs(step) < std::abs(step - 3.0)) return false;
+      ++continued;
+    }
+    return continued > 0;
+  }
+
+ private:
+  std::vector<std::vector<double>> plain_, marked_;
+};
+
 /// Thousands separated by commas in a table with semicolons or tabs look like decimals: "999",
 /// "1,000". They are thousands if no number of the file has a comma in any other position, and the
 /// numbers with one continue those of their column without one.
 bool commas_are_thousands(const std::vector<Line>& lines, const Trial& trial) {
-  std::vector<std::vector<double>> plain(trial.width), marked(trial.width);
+  NumbersByComma numbers(trial.width);
   std::vector<std::string_view> fields;
   for (const Line& line : lines) {
     split_fields(line.text, trial.separator, fields);
     if (is_remark(line.text, trial.separator) || width_of(fields) != trial.width) continue;
-    for (std::size_t c = 0; c < trial.width; ++c) {
-      const Cell cell = read_cell(fields[c], ',');
-      if (cell.kind != CellKind::number) continue;
-      const bool has_comma = fields[c].find(',') != std::string_view::npos;
-      if (has_comma && without_grouping(fields[c], '.').empty()) return false;
-      if (cell.value != 0.0) (has_comma ? marked : plain)[c].push_back(std::abs(cell.value));
-    }
+    for (std::size_t c = 0; c < trial.width; ++c)
+      if (!numbers.take(c, fields[c])) return false;
   }
-  std::size_t continued = 0;
-  for (std::size_t c = 0; c < trial.width; ++c) {
-    if (plain[c].empty() || marked[c].empty()) continue;
-    const double step = std::log10(*median(plain[c]) / *median(marked[c]));
-    if (std::abs(step) < std::abs(step - 3.0)) return false;
-    ++continued;
-  }
-  return continued > 0;
+  return numbers.continue_as_thousands();
 }
 
 /// The best way to split the lines for separators and decimal marks of the usual kinds.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "proofmass/core/utf8.hpp"
 #include "proofmass/io/matlab/mat_catalogue.hpp"
-#include "proofmass/io/text/utf8.hpp"
 
 namespace proofmass::io::matlab {
 namespace {

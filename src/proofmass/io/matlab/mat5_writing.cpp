@@ -1,7 +1,7 @@
 #include "proofmass/io/matlab/mat5_writing.hpp"
 
+#include "proofmass/core/utf8.hpp"
 #include "proofmass/io/bytes/little_endian.hpp"
-#include "proofmass/io/text/utf8.hpp"
 
 namespace proofmass::io::matlab {
 namespace {

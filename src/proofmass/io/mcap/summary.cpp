@@ -23,6 +23,29 @@ Result<std::optional<Footer>> read_footer(FileWindow& window) {
   return Found(parse_footer(fields.take(footer_bytes)));
 }
 
+/// Takes the number of messages of each channel; false if they are not those of the file.
+bool take_counts(std::string_view content, Summary& out) {
+  const auto statistics = parse_statistics(content);
+  if (!statistics) return false;
+  out.messages = statistics->of_channels;
+  std::uint64_t sum = 0;
+  for (const auto& [channel, count] : out.messages)
+    if (__builtin_add_overflow(sum, count, &sum)) return false;
+  return sum == statistics->messages;
+}
+
+void take_record(Op op, std::string_view content, Summary& out) {
+  if (op == Op::chunk_index) {
+    Fields index(content);
+    index.take(16);
+    out.chunk_starts.push_back(index.u64());
+  } else if (op == Op::schema) {
+    if (auto schema = parse_schema(content)) out.schemas.push_back(std::move(*schema));
+  } else if (op == Op::channel) {
+    if (auto channel = parse_channel(content)) out.channels.push_back(std::move(*channel));
+  }
+}
+
 /// nullopt if a record is truncated or the messages are not counted.
 std::optional<Summary> parsed_summary(std::string_view records) {
   Summary out;
@@ -31,23 +54,10 @@ std::optional<Summary> parsed_summary(std::string_view records) {
     const auto op = static_cast<Op>(fields.u8());
     const std::string_view content = fields.take(fields.u64());
     if (!fields.is_whole()) return std::nullopt;
-    if (op == Op::chunk_index) {
-      Fields index(content);
-      index.take(16);
-      out.chunk_starts.push_back(index.u64());
-    }
-    if (op == Op::schema)
-      if (auto schema = parse_schema(content)) out.schemas.push_back(std::move(*schema));
-    if (op == Op::channel)
-      if (auto channel = parse_channel(content)) out.channels.push_back(std::move(*channel));
-    if (op != Op::statistics) continue;
-    const auto statistics = parse_statistics(content);
-    if (!statistics) return std::nullopt;
-    out.messages = statistics->of_channels;
-    std::uint64_t sum = 0;
-    for (const auto& [channel, count] : out.messages)
-      if (__builtin_add_overflow(sum, count, &sum)) return std::nullopt;
-    is_counted = sum == statistics->messages;
+    if (op == Op::statistics)
+      is_counted = take_counts(content, out);
+    else
+      take_record(op, content, out);
   }
   std::ranges::sort(out.chunk_starts);
   return is_counted ? std::optional(std::move(out)) : std::nullopt;

@@ -2,8 +2,8 @@
 #include <array>
 #include <cstring>
 
+#include "proofmass/core/utf8.hpp"
 #include "proofmass/io/bytes/byte_source.hpp"
-#include "proofmass/io/text/utf8.hpp"
 
 namespace proofmass::io {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "proofmass/serve/utf8.hpp"
+#include "proofmass/core/utf8.hpp"
 
 namespace proofmass::serve {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include "proofmass/serve/utf8.hpp"
+#include "proofmass/core/utf8.hpp"
 
 namespace proofmass::serve {
 namespace {

@@ -35,6 +35,35 @@ std::vector<double> merged(std::vector<double> times_s) {
   return times_s;
 }
 
+struct MarkedAxes {
+  std::vector<MappedValues> files;
+  std::vector<View<double>> values;
+};
+
+Result<MarkedAxes> open_axes(const std::string& folder, const ViewHead& head) {
+  MarkedAxes out;
+  for (const std::size_t axis : axes_of(head)) {
+    auto file = MappedValues::open(folder + "/" + view_channel_name(axis));
+    if (!file) return file.error();
+    out.values.push_back(out.files.emplace_back(std::move(file).value()).values());
+  }
+  return out;
+}
+
+// The middle sample of each outlier in a rest.
+std::vector<std::size_t> outliers_in(const signal::Rest& rest,
+                                     const std::vector<View<double>>& axes,
+                                     double rate_hz) {
+  std::vector<std::size_t> out;
+  if (!(rate_hz > 0.0)) return out;
+  for (const View<double> axis : axes)
+    for (const signal::Event& event : signal::find_events(
+             axis.subspan(rest.first, rest.last + 1 - rest.first), {.rate_hz = rate_hz}))
+      if (event.kind == signal::EventKind::outlier)
+        out.push_back(rest.first + (event.first + event.last) / 2);
+  return out;
+}
+
 }  // namespace
 
 Status find_marks(const std::string& folder, ViewHead& head) {
@@ -42,13 +71,8 @@ Status find_marks(const std::string& folder, ViewHead& head) {
     head.why_no_rests = "rests and outliers are marked in recordings of up to 5 000 000 samples";
     return Done{};
   }
-  std::vector<MappedValues> files;
-  std::vector<View<double>> axes;
-  for (const std::size_t axis : axes_of(head)) {
-    auto file = MappedValues::open(folder + "/" + view_channel_name(axis));
-    if (!file) return file.error();
-    axes.push_back(files.emplace_back(std::move(file).value()).values());
-  }
+  const auto axes = open_axes(folder, head);
+  if (!axes) return axes.error();
   MappedValues stamps;
   if (head.has_stamps) {
     auto file = MappedValues::open(folder + "/" + view_stamps_name);
@@ -59,16 +83,12 @@ Status find_marks(const std::string& folder, ViewHead& head) {
   const auto time = [&](std::size_t k) {
     return head.has_stamps ? stamps.values()[k] : static_cast<double>(k) / rate;
   };
-  const signal::RestSearch search = signal::find_rests(axes, {.rate_hz = head.rate_hz});
+  const signal::RestSearch search = signal::find_rests(axes->values, {.rate_hz = head.rate_hz});
   head.why_no_rests = search.why_none;
   for (const signal::Rest& rest : search.rests) {
     head.rests.push_back({time(rest.first), time(rest.last)});
-    if (!(head.rate_hz > 0.0)) continue;
-    for (const View<double> axis : axes)
-      for (const signal::Event& event : signal::find_events(
-               axis.subspan(rest.first, rest.last + 1 - rest.first), {.rate_hz = head.rate_hz}))
-        if (event.kind == signal::EventKind::outlier)
-          head.outliers_s.push_back(time(rest.first + (event.first + event.last) / 2));
+    for (const std::size_t k : outliers_in(rest, axes->values, head.rate_hz))
+      head.outliers_s.push_back(time(k));
   }
   head.outliers_s = merged(std::move(head.outliers_s));
   return Done{};
