@@ -183,7 +183,7 @@ test("estimates are sent to a controller on this machine", async () => {
 test("a guided calibration ends with a certificate and a sensor file", async () => {
   const { page, close } = await open("v=calibration");
   await page.waitForSelector("#live-source");
-  await page.fill("#live-source", "sim:multi-position?seed=1&speed=20");
+  await page.fill("#live-source", "sim:multi-position?seed=1&speed=8");
   await page.fill("#live-file", "cal");
   await page.click("form button:has-text('Begin')");
   await page.waitForSelector(".say >> text=/Position [0-9]+:/");
