@@ -143,14 +143,7 @@ TEST(LiveTilt, VibrationThatBeginsAfterARestIsNotRotation) {
 TEST(LiveTilt, ASlowAccelerationBesideVibrationIsNotTilt) {
   int inside = 0, all = 0;
   for (unsigned seed = 61; seed < 66; ++seed) {
-    const MovingBase base = moving_base({.samples = 6000,
-                                         .accel_std_mps2 = 0.0,
-                                         .sway_mps2 = 1.2,
-                                         .slowest_sway_hz = 0.02,
-                                         .fastest_sway_hz = 0.1,
-                                         .turning = 0.0,
-                                         .reading_std_mps2 = 0.3},
-                                        seed);
+    const MovingBase base = slowly_swayed_base(0.3, seed);
     const Followed followed = follow(base.record, options_for(base.record));
     for (std::size_t k = 800; k < base.pitch_rad.size(); k += 50, ++all)
       inside += std::abs(followed["pitch"][k] - base.pitch_rad[k]) < 1.96 * followed["pitch_std"][k]

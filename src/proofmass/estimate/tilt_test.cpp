@@ -130,14 +130,7 @@ TEST(Tilt, ASwingThatNeverStopsIsNotARest) {
 // The vibration dominates the variance of the force, the slow acceleration its low frequencies.
 TEST(Tilt, ASlowAccelerationBesideVibrationIsNotTilt) {
   for (unsigned seed = 61; seed < 66; ++seed) {
-    const MovingBase base = moving_base({.samples = 6000,
-                                         .accel_std_mps2 = 0.0,
-                                         .sway_mps2 = 1.2,
-                                         .slowest_sway_hz = 0.02,
-                                         .fastest_sway_hz = 0.1,
-                                         .turning = 0.0,
-                                         .reading_std_mps2 = 0.5},
-                                        seed);
+    const MovingBase base = slowly_swayed_base(0.5, seed);
     const TiltSolution solution = estimate_tilt(base.record, exact).value();
     ASSERT_TRUE(solution.moving);
     double largest = 0.0;

@@ -132,6 +132,18 @@ inline MovingBase moving_base(const MovingOptions& o, std::uint64_t seed) {
   return out;
 }
 
+/// A base that does not rotate, with a slow level acceleration (a sine of 1.2 m/s², 0.02 to 0.1 Hz)
+/// beside white vibration; with gyroscope.
+inline MovingBase slowly_swayed_base(double vibration_mps2, std::uint64_t seed) {
+  return moving_base({.samples = 6000,
+                      .accel_std_mps2 = 0.0,
+                      .sway_mps2 = 1.2,
+                      .fastest_sway_hz = 0.1,
+                      .turning = 0.0,
+                      .reading_std_mps2 = vibration_mps2},
+                     seed);
+}
+
 /// A second simulator: roll and pitch, the acceleration of the base along one horizontal direction
 /// and its vibration are sums of six sines, 60 s at 100 Hz with white noise of 0.02 m/s². The other
 /// table in docs/methods/tilt.md.

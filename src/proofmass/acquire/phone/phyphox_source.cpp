@@ -42,7 +42,8 @@ PhyphoxSource::PhyphoxSource(std::unique_ptr<HttpClient> client,
   last_rows_ = Clock::now();
 }
 
-/// Asks when it is time, and takes the next answer. False if there is none until then.
+/// Sends the next request when it is due and takes the next response; false if none arrives by
+/// then.
 Result<bool> PhyphoxSource::take_next(Clock::time_point until) {
   if (!client_->is_waiting()) {
     std::this_thread::sleep_until(std::min(next_question_, until));
