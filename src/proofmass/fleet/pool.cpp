@@ -165,6 +165,45 @@ bool has_ended(const Child& child) {
   return ::poll(&handle, 1, 0) > 0;
 }
 
+/// Starts waiting jobs while fewer processes than allowed run.
+Status start_waiting(std::deque<std::size_t>& waiting,
+                     std::list<Child>& children,
+                     const PoolOptions& options,
+                     const PoolWork& work) {
+  while (children.size() < options.processes && !waiting.empty()) {
+    auto started = start(waiting.front(), options, work);
+    if (!started) return started.error();
+    waiting.pop_front();
+    children.push_back(std::move(started).value());
+  }
+  return Done{};
+}
+
+void end_if_late(Child& child, double timeout_s) {
+  const bool late = timeout_s > 0.0 && seconds_since(child.begun) > timeout_s;
+  if (!late || child.timed_out || has_ended(child)) return;
+  child.timed_out = true;
+  end_group(child);
+}
+
+/// Removes the children that have ended; the jobs to repeat wait again.
+void collect(std::list<Child>& children,
+             std::deque<std::size_t>& waiting,
+             const PoolOptions& options,
+             const PoolWork& work) {
+  for (auto child = children.begin(); child != children.end();) {
+    read_words(*child);
+    end_if_late(*child, options.timeout_s);
+    if (!has_ended(*child)) {
+      ++child;
+      continue;
+    }
+    const Ended ended = finish(*child);
+    child = children.erase(child);
+    if (work.ended(ended)) waiting.push_back(ended.job);
+  }
+}
+
 }  // namespace
 
 Status run_pool(std::span<const std::size_t> jobs,
@@ -178,31 +217,9 @@ Status run_pool(std::span<const std::size_t> jobs,
       for (Child& child : children) finish(child);
       return outcome;
     }
-    while (outcome && children.size() < options.processes && !waiting.empty()) {
-      auto started = start(waiting.front(), options, work);
-      if (!started) {
-        outcome = started.error();
-        break;
-      }
-      waiting.pop_front();
-      children.push_back(std::move(started).value());
-    }
+    outcome = start_waiting(waiting, children, options, work);
     wait_for(children);
-    for (auto child = children.begin(); child != children.end();) {
-      read_words(*child);
-      const bool late = options.timeout_s > 0.0 && seconds_since(child->begun) > options.timeout_s;
-      if (late && !child->timed_out && !has_ended(*child)) {
-        child->timed_out = true;
-        end_group(*child);
-      }
-      if (!has_ended(*child)) {
-        ++child;
-        continue;
-      }
-      const Ended ended = finish(*child);
-      child = children.erase(child);
-      if (work.ended(ended)) waiting.push_back(ended.job);
-    }
+    collect(children, waiting, options, work);
   }
   return outcome;
 }

@@ -39,6 +39,36 @@ std::vector<ServoRun> worst_of(const std::vector<ServoRun>& runs) {
   return out;
 }
 
+/// The identified model of a simulated drive.
+Result<MotorModel> identify(const ServoOptions& options) {
+  const Result<simulate::MotorResult> recorded = simulate::simulate_motor(
+      {.seed = options.seed, .rate_hz = options.rate_hz, .drive = options.drive});
+  if (!recorded) return recorded.error();
+  const auto found = estimate::estimate_motor(record_of(recorded->recording));
+  if (!found) return found.error();
+  return model_of(*found, options.drive.inductance_h);
+}
+
+/// Appends the closed loops of one seed, with and without compensation of friction; of the first
+/// seed also the traces.
+Status add_loops(const Controllers& controllers, int seed, ServoStudy& study) {
+  for (const Feedback feedback : feedbacks)
+    for (const bool compensated : {false, true}) {
+      Traces traces;
+      const auto run = run_loop(study.options, study.model, controllers,
+                                {.feedback = feedback,
+                                 .compensated = compensated,
+                                 .seed = study.options.seed + static_cast<std::uint64_t>(seed)},
+                                seed == 0 ? &traces : nullptr);
+      if (!run) return run.error();
+      study.runs.push_back(*run);
+      if (seed > 0) continue;
+      study.speed_traces.push_back(std::move(traces.speed));
+      study.position_traces.push_back(std::move(traces.position));
+    }
+  return Done{};
+}
+
 }  // namespace
 
 std::string_view name_of(Feedback feedback) {
@@ -53,12 +83,7 @@ Result<ServoStudy> study_servo(const ServoOptions& options) {
   if (options.delay_samples < 1 || options.delay_samples > 20 || options.seeds < 1)
     return Error{Errc::invalid_argument,
                  "expected a delay of 1 to 20 samples and at least one run"};
-  const Result<simulate::MotorResult> recorded = simulate::simulate_motor(
-      {.seed = options.seed, .rate_hz = options.rate_hz, .drive = options.drive});
-  if (!recorded) return recorded.error();
-  const auto found = estimate::estimate_motor(record_of(recorded->recording));
-  if (!found) return found.error();
-  const Result<MotorModel> model = model_of(*found, options.drive.inductance_h);
+  const Result<MotorModel> model = identify(options);
   if (!model) return model.error();
   ServoStudy study{.options = options,
                    .model = *model,
@@ -69,20 +94,7 @@ Result<ServoStudy> study_servo(const ServoOptions& options) {
   const Controllers controllers = design_controllers(study.model, options);
   for (int s = 0; s < options.seeds; ++s) {
     if (options.progress) options.progress("closed loops", static_cast<double>(s) / options.seeds);
-    for (const Feedback feedback : feedbacks)
-      for (const bool compensated : {false, true}) {
-        Traces traces;
-        const auto run = run_loop(options, study.model, controllers,
-                                  {.feedback = feedback,
-                                   .compensated = compensated,
-                                   .seed = options.seed + static_cast<std::uint64_t>(s)},
-                                  s == 0 ? &traces : nullptr);
-        if (!run) return run.error();
-        study.runs.push_back(*run);
-        if (s > 0) continue;
-        study.speed_traces.push_back(std::move(traces.speed));
-        study.position_traces.push_back(std::move(traces.position));
-      }
+    if (const Status added = add_loops(controllers, s, study); !added) return added.error();
   }
   study.worst = worst_of(study.runs);
   return study;

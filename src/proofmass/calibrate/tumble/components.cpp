@@ -15,14 +15,19 @@ constexpr double allowed = 1.353;  // decrease of ln L from its maximum: one-sid
 constexpr double decisive = 4.0;   // difference in ln L that decides between two explanations
 constexpr double exceeded = 0.5;   // decrease of ln L if the residuals exceed the assumption
 
+/// Sizes and their ln L.
+struct Likely {
+  TumbleSizes sizes;
+  double log_likelihood = 0.0;
+};
+
 /// Restricted likelihood as a function of the sizes.
 class SizeSearch {
  public:
   SizeSearch(const Eigen::MatrixXd& A, const Eigen::VectorXd& y, const TumbleErrors& errors)
       : A_(A), y_(y), errors_(errors) {
-    const TumbleSolved plain = solve_tumble(A, y, errors, {});
-    const auto dof = static_cast<double>(A.rows() - A.cols());
-    scatter_ = std::sqrt(plain.chi_square / dof);
+    plain_chi_square_ = solve_tumble(A, y, errors, {}).chi_square;
+    scatter_ = std::sqrt(plain_chi_square_ / dof());
     // Units of angle and drift that correspond to the noise or, if larger, to the residuals.
     const double noise = errors.noise_known ? std::max(1.0, scatter_) : scatter_;
     const double output = noise * errors.noise_std.mean();
@@ -34,6 +39,54 @@ class SizeSearch {
              .drift = output};
   }
 
+  /// Square root of χ² per degree of freedom with the stated noise alone.
+  [[nodiscard]] double scatter() const { return scatter_; }
+
+  /// No assumed error; the noise as stated, or that of the residuals.
+  [[nodiscard]] Likely without_assumed() const {
+    const TumbleSizes sizes{
+        .noise = errors_.noise_known ? 1.0 : scatter_,
+        .indexing_rad = errors_.indexing_assumed ? 0.0 : errors_.indexing_std_rad,
+        .drift = errors_.drift_assumed ? 0.0 : errors_.drift_std};
+    return {sizes, of(sizes)};
+  }
+
+  /// Maximises over the assumed sizes and, with `noise`, over the noise.
+  void climb(Likely& at, bool noise) const {
+    constexpr int rounds = 3;
+    for (int round = 0; round < rounds; ++round) {
+      if (errors_.indexing_assumed) climb(&TumbleSizes::indexing_rad, at);
+      if (errors_.drift_assumed) climb(&TumbleSizes::drift, at);
+      if (noise) climb(&TumbleSizes::noise, at);
+    }
+  }
+
+  /// Factor on a stated noise; raises the noise of `at` with it where no other size explains the
+  /// residuals.
+  [[nodiscard]] double noise_factor(Likely& at) const {
+    if (misfits(solve_tumble(A_, y_, errors_, at.sizes).chi_square)) {
+      climb(at, true);
+      return at.sizes.noise;
+    }
+    TumbleSizes scattered = without_assumed().sizes;
+    scattered.noise = scatter_;
+    // A larger noise of all positions explains the residuals nearly as well, which indicates an
+    // outlier: the noise is increased as well.
+    const bool outlier = misfits(plain_chi_square_) && at.log_likelihood - of(scattered) < decisive;
+    return outlier ? std::max(scatter_, 1.0) : 1.0;
+  }
+
+  /// Value to use for an assumed size.
+  [[nodiscard]] double judged(double TumbleSizes::* size, const Likely& at, double assumed) const {
+    constexpr double far = 1e4;
+    const double found = at.sizes.*size;
+    if (found > assumed) return highest(size, at, exceeded, far * std::max(found, unit_.*size));
+    return highest(size, at, allowed, assumed);
+  }
+
+ private:
+  [[nodiscard]] double dof() const { return static_cast<double>(A_.rows() - A_.cols()); }
+
   /// ln L, minus 2 if the bias drift exceeds the assumption: errors of the angles alone are the
   /// simpler explanation of large residuals.
   [[nodiscard]] double of(const TumbleSizes& sizes) const {
@@ -41,80 +94,66 @@ class SizeSearch {
     const bool beyond = errors_.drift_assumed && sizes.drift > 1.001 * errors_.drift_std;
     return solve_tumble(A_, y_, errors_, sizes).log_likelihood - (beyond ? simpler : 0.0);
   }
-  [[nodiscard]] const TumbleSizes& unit() const { return unit_; }
-  [[nodiscard]] double scatter() const { return scatter_; }
-  /// True if the stated noise alone does not explain the residuals.
-  [[nodiscard]] bool misfits() const {
-    const auto dof = static_cast<double>(A_.rows() - A_.cols());
-    const double square = scatter_ * scatter_;
-    return (errors_.noise_dof > 0.0 ? fisher_f_p(square, dof, errors_.noise_dof)
-                                    : chi_square_p(square * dof, dof)) < fits_p;
+
+  /// True if the noise does not explain this χ².
+  [[nodiscard]] bool misfits(double chi_square) const {
+    return (errors_.noise_dof > 0.0 ? fisher_f_p(chi_square / dof(), dof(), errors_.noise_dof)
+                                    : chi_square_p(chi_square, dof())) < fits_p;
   }
+
+  /// Takes one size's value where that is more likely.
+  void consider(double TumbleSizes::* size, double value, TumbleSizes from, Likely& at) const {
+    from.*size = value;
+    const double log_likelihood = of(from);
+    if (log_likelihood > at.log_likelihood) at = {from, log_likelihood};
+  }
+
   /// Maximises over one size, the others fixed: over zero and 10^(−1.5 … 2.5) units, then on a
   /// finer grid about the best value.
-  void climb(double TumbleSizes::* size, TumbleSizes& at, double& best) const {
+  void climb(double TumbleSizes::* size, Likely& at) const {
     constexpr int steps = 16;
-    const TumbleSizes from = at;
-    for (int k = size == &TumbleSizes::noise ? 0 : -1; k <= steps; ++k) {
-      TumbleSizes next = from;
-      next.*size = k < 0 ? 0.0 : unit_.*size * std::pow(10.0, -1.5 + 4.0 * k / steps);
-      const double value = of(next);
-      if (value <= best) continue;
-      best = value;
-      at = next;
-    }
-    const double middle = at.*size;
+    const TumbleSizes from = at.sizes;
+    const bool is_noise = size == &TumbleSizes::noise;
+    if (!is_noise) consider(size, 0.0, from, at);
+    for (int k = 0; k <= steps; ++k)
+      consider(size, unit_.*size * std::pow(10.0, -1.5 + 4.0 * k / steps), from, at);
+    const double middle = at.sizes.*size;
+    if (!(middle > 0.0)) return;
     constexpr int finer = 4;
-    for (int k = -finer; middle > 0.0 && k <= finer; ++k) {
-      TumbleSizes next = at;
-      next.*size = middle * std::pow(10.0, 0.25 * k / (finer + 1));
-      if (size == &TumbleSizes::noise && errors_.noise_known && next.noise < 1.0) continue;
-      const double value = of(next);
-      if (value <= best) continue;
-      best = value;
-      at = next;
+    for (int k = -finer; k <= finer; ++k) {
+      const double value = middle * std::pow(10.0, 0.25 * k / (finer + 1));
+      if (is_noise && errors_.noise_known && value < 1.0) continue;
+      consider(size, value, from, at);
     }
   }
-  /// Largest value of a size for which ln L ≥ `level`, at most `most`.
+
+  /// Largest value of a size, at most `most`, that decreases ln L by `decrease` or less.
   [[nodiscard]] double highest(double TumbleSizes::* size,
-                               const TumbleSizes& at,
-                               double level,
+                               const Likely& at,
+                               double decrease,
                                double most) const {
-    const auto value = [&](double x) {
-      TumbleSizes next = at;
+    const auto is_likely = [&](double x) {
+      TumbleSizes next = at.sizes;
       next.*size = x;
-      return of(next);
+      return of(next) >= at.log_likelihood - decrease;
     };
-    if (value(most) >= level) return most;
-    double low = at.*size, high = most;
+    if (is_likely(most)) return most;
+    double low = at.sizes.*size, high = most;
     constexpr int steps = 24;
     for (int k = 0; k < steps; ++k) {
       const double middle = low > 0.0 ? std::sqrt(low * high) : 0.1 * high;
       if (low == 0.0 && middle < 1e-6 * unit_.*size) return middle;
-      (value(middle) >= level ? low : high) = middle;
+      (is_likely(middle) ? low : high) = middle;
     }
     return high;
   }
 
- private:
   const Eigen::MatrixXd& A_;
   const Eigen::VectorXd& y_;
   const TumbleErrors& errors_;
   TumbleSizes unit_;
-  double scatter_ = 0.0;
+  double scatter_ = 0.0, plain_chi_square_ = 0.0;
 };
-
-// Value to use for an assumed size.
-double judged(const SizeSearch& search,
-              double TumbleSizes::* size,
-              const TumbleSizes& at,
-              double best,
-              double assumed) {
-  constexpr double far = 1e4;
-  if (at.*size > assumed)
-    return search.highest(size, at, best - exceeded, far * std::max(at.*size, search.unit().*size));
-  return search.highest(size, at, best - allowed, assumed);
-}
 
 }  // namespace
 
@@ -206,48 +245,20 @@ TumbleSizes find_sizes(const Eigen::MatrixXd& A,
   const SizeSearch search(A, y, errors);
   constexpr double none = 1e-100;
   if (!errors.noise_known && search.scatter() < none) return {.noise = 0.0};
-  const auto dof = static_cast<double>(A.rows() - A.cols());
-  TumbleSizes at = sizes;
-  at.noise = errors.noise_known ? 1.0 : search.scatter();
-  if (errors.indexing_assumed) at.indexing_rad = 0.0;
-  if (errors.drift_assumed) at.drift = 0.0;
-  double best = search.of(at);
-  const double plain = best, scatter = at.noise;
-  TumbleSizes scattered = at;
-  scattered.noise = search.scatter();
-  constexpr int rounds = 3;
-  const auto climb = [&](bool noise) {
-    for (int round = 0; round < rounds; ++round) {
-      if (errors.indexing_assumed) search.climb(&TumbleSizes::indexing_rad, at, best);
-      if (errors.drift_assumed) search.climb(&TumbleSizes::drift, at, best);
-      if (noise) search.climb(&TumbleSizes::noise, at, best);
-    }
-  };
-  climb(!errors.noise_known);
+  const Likely plain = search.without_assumed();
+  Likely at = plain;
+  search.climb(at, !errors.noise_known);
   if (errors.noise_known) {
-    const double chi_square = solve_tumble(A, y, errors, at).chi_square;
-    const double p = errors.noise_dof > 0.0 ? fisher_f_p(chi_square / dof, dof, errors.noise_dof)
-                                            : chi_square_p(chi_square, dof);
-    if (p < fits_p) {
-      climb(true);
-    } else if (search.misfits() && best - search.of(scattered) < decisive) {
-      // A larger noise of all positions explains the residuals nearly as well, which indicates an
-      // outlier: the noise is increased as well.
-      sizes.noise = search.scatter();
-    }
-  } else if (best - plain < 2.0) {
-    // Scatter alone explains the residuals sufficiently.
-    at = {.noise = scatter,
-          .indexing_rad = errors.indexing_assumed ? 0.0 : errors.indexing_std_rad,
-          .drift = errors.drift_assumed ? 0.0 : errors.drift_std};
-    best = plain;
+    sizes.noise = search.noise_factor(at);
+  } else {
+    // Scatter alone may explain the residuals sufficiently.
+    constexpr double sufficient = 2.0;
+    if (at.log_likelihood - plain.log_likelihood < sufficient) at = plain;
+    sizes.noise = at.sizes.noise;
   }
-  sizes.noise = std::max(sizes.noise, at.noise);
   if (errors.indexing_assumed)
-    sizes.indexing_rad =
-        judged(search, &TumbleSizes::indexing_rad, at, best, errors.indexing_std_rad);
-  if (errors.drift_assumed)
-    sizes.drift = judged(search, &TumbleSizes::drift, at, best, errors.drift_std);
+    sizes.indexing_rad = search.judged(&TumbleSizes::indexing_rad, at, errors.indexing_std_rad);
+  if (errors.drift_assumed) sizes.drift = search.judged(&TumbleSizes::drift, at, errors.drift_std);
   return sizes;
 }
 

@@ -162,6 +162,13 @@ void set_motion_noise(const std::vector<Epoch>& epochs, const Setting& setting, 
                                     : steering_psd;
 }
 
+// The variance of the wander at the start.
+void set_wander(const Model& model, Gaussian<at::states>& prior) {
+  if (!model.with_fixes) return;
+  for (const int i : {at::wander, at::wander + 1})
+    prior.cov(i, i) = square(model.noise.wander_std_m);
+}
+
 // The noise parameters whose probability given the recordings is highest, on a logarithmic grid
 // that is refined; each has a prior, since a short recording says little of a slow wander.
 class NoiseSearch {
@@ -171,29 +178,30 @@ class NoiseSearch {
 
   void search() {
     double best = probability();
-    for (double factor : {2.0, 2.0, 1.41}) {
+    for (const double factor : {2.0, 2.0, 1.41})
       for (const Parameter& parameter : parameters_) {
         if (parameter.of_fixes && !model_.with_fixes) continue;
-        double& value = model_.noise.*parameter.value;
-        for (const double step : {factor, 1.0 / factor}) {
-          for (int tries = 0; tries < 3; ++tries) {
-            const double before = value;
-            value *= step;
-            const double now = probability();
-            if (now > best) {
-              best = now;
-              continue;
-            }
-            value = before;
-            break;
-          }
-        }
+        climb(model_.noise.*parameter.value, factor, best);
+        climb(model_.noise.*parameter.value, 1.0 / factor, best);
       }
-    }
     if (model_.with_fixes) take_mean_square(model_.noise.wander_std_m);
   }
 
  private:
+  // Multiplies a parameter by `step` as long as the probability increases, thrice at most.
+  void climb(double& value, double step, double& best) const {
+    for (int tries = 0; tries < 3; ++tries) {
+      const double before = value;
+      value *= step;
+      const double now = probability();
+      if (!(now > best)) {
+        value = before;
+        return;
+      }
+      best = now;
+    }
+  }
+
   // From the most probable value s to the root mean square over its log-normal distribution,
   // s e^(σ²) with the variance σ² of the logarithm: a few swings of a slow wander leave its size
   // open, and with it the weight of the fixes.
@@ -224,8 +232,7 @@ class NoiseSearch {
 
   [[nodiscard]] double probability() const {
     Gaussian<at::states> prior = prior_;
-    for (const int i : {at::wander, at::wander + 1})
-      if (model_.with_fixes) prior.cov(i, i) = square(model_.noise.wander_std_m);
+    set_wander(model_, prior);
     double sum = run(model_, prior, path_, false).log_likelihood;
     for (const Parameter& parameter : parameters_)
       if (!parameter.of_fixes || model_.with_fixes)
@@ -298,6 +305,42 @@ bool has_settled(const Gaussian<at::states>& before, const Gaussian<at::states>&
                              });
 }
 
+// The model of the vehicle's sensors, without fixes.
+Model model_of(const std::vector<Epoch>& epochs, const Setting& setting, Effort effort) {
+  Model model{.epochs = &epochs, .vehicle = setting.vehicle, .noise = {}};
+  set_motion_noise(epochs, setting, model.noise);
+  if (effort == Effort::comparison) {
+    // A steered wheel's angle is predicted from the yaw rate: walks wider than the motion's would
+    // count against every hypothesis that has one, by the likelihood.
+    model.noise.speed_psd /= loose;
+    model.noise.rate_psd /= loose;
+  }
+  return model;
+}
+
+// Adds the fixes, given the first path.
+void add_fixes(Model& model, Gaussian<at::states>& prior, std::vector<State>& path) {
+  model.with_fixes = true;
+  const Chart chart = chart_of(*model.epochs, path);
+  open_chart(chart.bearing, chart.origin, model.noise.wander_std_m, prior);
+  set_in_path(prior, path);
+}
+
+void take_clocks(const Gaussian<at::states>& end, Vehicle& vehicle) {
+  for (std::size_t c = 1; c < most_clocks; ++c)
+    vehicle.offset_s[c] = end.mean(at::clock + static_cast<int>(c));
+}
+
+int usual_passes(Effort effort) {
+  return effort == Effort::quick_comparison ? 2 : relinearisations;
+}
+
+// Whether no further pass is needed, or none would help.
+bool is_enough(int passes, Effort effort, bool converged) {
+  return passes >= most_relinearisations ||
+         (passes >= usual_passes(effort) && (effort != Effort::full || converged));
+}
+
 }  // namespace
 
 Fitted fit_path(const Recorded& recorded,
@@ -308,38 +351,22 @@ Fitted fit_path(const Recorded& recorded,
   Vehicle& vehicle = fitted.setting.vehicle;
   vehicle.offset_s = recorded.offset_s;
   std::vector<Epoch> epochs = epochs_of(recorded, vehicle);
-  Model model{.epochs = &epochs, .vehicle = vehicle, .noise = {}, .with_fixes = false};
-  set_motion_noise(epochs, fitted.setting, model.noise);
-  if (effort == Effort::comparison) {
-    // A steered wheel's angle is predicted from the yaw rate: walks wider than the motion's would
-    // count against every hypothesis that has one, by the likelihood.
-    model.noise.speed_psd /= loose;
-    model.noise.rate_psd /= loose;
-  }
+  Model model = model_of(epochs, fitted.setting, effort);
   Gaussian<at::states> prior = prior_of(recorded, setting);
   fitted.pass = first_pass(model, prior, recorded.fixes && !recorded.has_yaw());
-  if (recorded.fixes) {
-    model.with_fixes = true;
-    const Chart chart = chart_of(epochs, fitted.pass.path);
-    open_chart(chart.bearing, chart.origin, model.noise.wander_std_m, prior);
-    set_in_path(prior, fitted.pass.path);
-  }
-  const int passes = effort == Effort::quick_comparison ? 2 : relinearisations;
+  if (recorded.fixes) add_fixes(model, prior, fitted.pass.path);
   model.comparing = effort != Effort::full;
   for (int i = 0;; ++i) {
-    if (progress) progress("path", std::min(1.0, static_cast<double>(i) / passes));
+    if (progress) progress("path", std::min(1.0, static_cast<double>(i) / usual_passes(effort)));
     if (recorded.fixes) form_normal_points(vehicle, fitted.pass.path, normal_point_s, epochs);
     if (i == 1 && effort != Effort::quick_comparison)
       NoiseSearch(model, prior, fitted.pass.path).search();
-    for (const int s : {at::wander, at::wander + 1})
-      if (model.with_fixes) prior.cov(s, s) = square(model.noise.wander_std_m);
+    set_wander(model, prior);
     const Gaussian<at::states> before = fitted.pass.end;
     fitted.pass = run(model, prior, fitted.pass.path, true);
     fitted.converged = has_settled(before, fitted.pass.end);
-    const bool enough = i + 1 >= passes && (effort != Effort::full || fitted.converged);
-    if (enough || i + 1 == most_relinearisations) break;
-    for (std::size_t c = 1; c < most_clocks; ++c)
-      vehicle.offset_s[c] = fitted.pass.end.mean(at::clock + static_cast<int>(c));
+    if (is_enough(i + 1, effort, fitted.converged)) break;
+    take_clocks(fitted.pass.end, vehicle);
     epochs = epochs_of(recorded, vehicle);
     model.vehicle = vehicle;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace proofmass::estimate::drive {
@@ -85,6 +86,69 @@ bool show_steering(const std::vector<DriveWheel>& wheels, const Recorded& record
   return std::max(lefts, rights) > 1 || recorded.wheels_have_yaw();
 }
 
+// ln of the likelihood ratio at which one assignment is preferred.
+constexpr double clear = 5.0;
+
+// An assignment, and the logarithms of the likelihoods of all that were compared.
+struct Choice {
+  Steered steered{};
+  double log_likelihood = -std::numeric_limits<double>::infinity();
+  std::vector<double> compared{};
+
+  [[nodiscard]] bool any_steered() const {
+    return std::ranges::find(steered, true) != steered.end();
+  }
+  // Whether another assignment explains the motion nearly as well.
+  [[nodiscard]] bool is_open() const {
+    return std::ranges::count_if(compared,
+                                 [&](double one) { return one > log_likelihood - clear; }) > 1;
+  }
+};
+
+// Compares the likelihoods at the most probable paths: the likelihood is an integral over speed and
+// yaw rate, which are almost free. Its value depends on the point of the vehicle whose speed is the
+// state, and favours the assignment in which that point is slower.
+Choice choose(const std::vector<DriveWheel>& wheels,
+              const DriveOptions& options,
+              const Recorded& recorded,
+              Setting setting) {
+  const std::vector<Steered> all = assignments(wheels);
+  Choice choice{all.front(), -std::numeric_limits<double>::infinity(), {}};
+  if (all.size() == 1 || !show_steering(wheels, recorded)) return choice;
+  // A single wheel shows only by the fixes' noise that it steers: that noise must be estimated.
+  const Effort effort = all.size() <= 2 ? Effort::comparison : Effort::quick_comparison;
+  for (const Steered& steered : all) {
+    set_geometry(wheels, options, steered, setting);
+    const Pass pass = fit_path(recorded, setting, effort, {}).pass;
+    const double now = effort == Effort::comparison ? pass.log_likelihood : -0.5 * pass.chi2;
+    choice.compared.push_back(now);
+    if (!(now > choice.log_likelihood + clear)) continue;
+    choice.log_likelihood = now;
+    choice.steered = steered;
+  }
+  return choice;
+}
+
+void note_choice(const std::vector<DriveWheel>& wheels,
+                 const Choice& choice,
+                 DriveSolution& solution) {
+  const std::string names = names_of(wheels, choice.steered);
+  // A single wheel shows by the fixes alone that it steers, which wander.
+  if (choice.is_open() || (wheels.size() == 1 && !choice.compared.empty()))
+    solution.notes.push_back(
+        {Severity::warning,
+         "the motion does not show which wheels are on the steered axle: " +
+             (choice.any_steered() ? names + " are taken to be"
+                                   : std::string("all are taken as unsteered")) +
+             ", and the heading is off by the change of the steering angle if they are not; state "
+             "them",
+         {Advice{"front"}}});
+  if (!choice.compared.empty() && choice.log_likelihood > choice.compared.front())
+    solution.notes.push_back({Severity::info,
+                              "the motion shows that " + names + " are on the steered axle",
+                              {Advice{"front"}}});
+}
+
 }  // namespace
 
 Fitted fit_best(const std::vector<DriveWheel>& wheels,
@@ -92,48 +156,11 @@ Fitted fit_best(const std::vector<DriveWheel>& wheels,
                 const Recorded& recorded,
                 Setting& setting,
                 DriveSolution& solution) {
-  // ln of the likelihood ratio, at the most probable paths: the likelihood is an integral over
-  // speed and yaw rate, which are almost free. Its value depends on the point of the vehicle whose
-  // speed is the state, and favours the hypothesis in which that point is slower.
-  constexpr double clear = 5.0;
-  const std::vector<Steered> choices = assignments(wheels);
-  // A single wheel shows only by the fixes' noise that it steers: that noise must be estimated.
-  const Effort effort = choices.size() <= 2 ? Effort::comparison : Effort::quick_comparison;
-  Steered chosen = choices.front();
-  double first = 0.0, best = -INFINITY;
-  std::vector<double> likelihoods;
-  for (const Steered& steered : choices) {
-    if (choices.size() == 1 || !show_steering(wheels, recorded)) break;
-    set_geometry(wheels, options, steered, setting);
-    const Pass pass = fit_path(recorded, setting, effort, {}).pass;
-    const double now = effort == Effort::comparison ? pass.log_likelihood : -0.5 * pass.chi2;
-    if (!std::isfinite(best)) first = now;
-    likelihoods.push_back(now);
-    if (now > best + (std::isfinite(best) ? clear : 0.0)) {
-      best = now;
-      chosen = steered;
-    }
-  }
-  set_geometry(wheels, options, chosen, setting);
-  const bool none = std::ranges::find(chosen, true) == chosen.end();
-  if (none && choices.size() > 1) warn_of_steering(wheels, recorded.wheels, solution);
-  // A single wheel shows by the fixes alone that it steers, which wander.
-  const bool alike =
-      std::ranges::count_if(likelihoods, [&](double one) { return one > best - clear; }) > 1;
-  if (alike || (wheels.size() == 1 && !likelihoods.empty()))
-    solution.notes.push_back(
-        {Severity::warning,
-         "the motion does not show which wheels are on the steered axle: " +
-             (none ? std::string("all are taken as unsteered")
-                   : names_of(wheels, chosen) + " are taken to be") +
-             ", and the heading is off by the change of the steering angle if they are not; state "
-             "them",
-         {Advice{"front"}}});
-  if (choices.size() > 1 && best > first)
-    solution.notes.push_back(
-        {Severity::info,
-         "the motion shows that " + names_of(wheels, chosen) + " are on the steered axle",
-         {Advice{"front"}}});
+  const Choice choice = choose(wheels, options, recorded, setting);
+  set_geometry(wheels, options, choice.steered, setting);
+  if (!choice.any_steered() && assignments(wheels).size() > 1)
+    warn_of_steering(wheels, recorded.wheels, solution);
+  note_choice(wheels, choice, solution);
   return fit_path(recorded, setting, Effort::full, options.progress);
 }
 

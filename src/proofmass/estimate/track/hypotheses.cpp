@@ -200,15 +200,44 @@ double log_prior_of_tilts(const std::vector<QuietStretch>& kinds,
 /// A combination: for each candidate 0 for a rest, or which of its other kinds, from 1.
 using Choice = std::vector<std::uint8_t>;
 
+/// The doubtful intervals, and what each of all intervals may be besides a rest.
+struct Candidates {
+  std::vector<std::size_t> at;
+  std::vector<std::vector<QuietStretch>> other;
+
+  /// How many kinds there are for each candidate, the rest included.
+  [[nodiscard]] std::vector<std::uint8_t> counts() const {
+    std::vector<std::uint8_t> counts;
+    for (const std::size_t i : at) counts.push_back(static_cast<std::uint8_t>(1 + other[i].size()));
+    return counts;
+  }
+  /// Plateaus wherever possible.
+  [[nodiscard]] Choice accelerating() const {
+    Choice choice;
+    for (const std::size_t i : at)
+      choice.push_back(other[i].back() == QuietStretch::plateau
+                           ? static_cast<std::uint8_t>(other[i].size())
+                           : 0);
+    return choice;
+  }
+  [[nodiscard]] std::vector<QuietStretch> kinds_of(const Choice& choice) const {
+    std::vector<QuietStretch> kinds(other.size(), QuietStretch::rest);
+    for (std::size_t i = 0; i < at.size(); ++i)
+      if (choice[i] > 0) kinds[at[i]] = other[at[i]][choice[i] - 1U];
+    return kinds;
+  }
+};
+
 /// Candidates that are not rests if the closure velocities accumulate, as they do if the sensor
 /// never stops: those at more than a quarter of the highest such speed, and all that can only be
 /// plateaus.
 Choice by_summed_velocities(const std::vector<Closure>& closures,
                             const std::vector<StretchKnots>& stretches,
                             const std::vector<InertialEpoch>& knots,
-                            const std::vector<std::vector<QuietStretch>>& other,
-                            const std::vector<std::size_t>& candidates) {
-  const auto accelerates = [&](std::size_t i) { return other[i].front() == QuietStretch::plateau; };
+                            const Candidates& candidates) {
+  const auto accelerates = [&](std::size_t i) {
+    return candidates.other[i].front() == QuietStretch::plateau;
+  };
   std::vector<double> speed_mps(stretches.size(), 0.0);
   double v = 0.0, highest = 0.0;
   for (std::size_t i = 1; i < stretches.size(); ++i) {
@@ -221,7 +250,7 @@ Choice by_summed_velocities(const std::vector<Closure>& closures,
       v += stretches[i].level_mps2 * knots[k].dt_s;
   }
   Choice choice;
-  for (const std::size_t i : candidates)
+  for (const std::size_t i : candidates.at)
     choice.push_back(accelerates(i) || speed_mps[i] > 0.25 * highest ? 1 : 0);
   return choice;
 }
@@ -249,12 +278,15 @@ class Climb {
       for (std::size_t i = 0; i < kinds_.size(); ++i)
         for (const Choice& one : changed_at(i, from)) take_better(one, best);
       for (std::size_t i = 0; best == from && i < kinds_.size(); ++i)
-        for (const Choice& one : changed_at(i, from))
-          for (std::size_t j = 0; j < i; ++j)
-            for (const Choice& two : changed_at(j, one)) take_better(two, best);
+        for (const Choice& one : changed_at(i, from)) change_another(i, one, best);
       if (best == from) take_better(opposite(from), best);
       climbs = best != from;
     }
+  }
+  /// Changes one of the first `end` intervals.
+  void change_another(std::size_t end, const Choice& from, Choice& best) {
+    for (std::size_t j = 0; j < end; ++j)
+      for (const Choice& changed : changed_at(j, from)) take_better(changed, best);
   }
   [[nodiscard]] std::vector<Choice> changed_at(std::size_t i, const Choice& from) const {
     std::vector<Choice> changed;
@@ -309,6 +341,19 @@ double chance_of_closing(const std::vector<QuietStretch>& kinds,
     plateaus_s2 = motions_s2 = 0.0;
   }
   return chance;
+}
+
+/// The hypotheses, given the log posterior of each combination.
+std::vector<StopHypothesis> hypotheses_of(const std::map<Choice, double>& log_posterior,
+                                          const Candidates& candidates) {
+  const auto log_of = [](const auto& one) { return one.second; };
+  const double best = std::ranges::max_element(log_posterior, {}, log_of)->second;
+  double sum = 0.0;
+  for (const auto& [choice, log] : log_posterior) sum += std::exp(log - best);
+  std::vector<StopHypothesis> hypotheses;
+  for (const auto& [choice, log] : log_posterior)
+    hypotheses.push_back({candidates.kinds_of(choice), std::exp(log - best) / sum});
+  return hypotheses;
 }
 
 /// The same hypothesis with its plateaus as rests.
@@ -383,46 +428,26 @@ std::vector<StopHypothesis> stop_hypotheses(const TrackSignal& signal,
   const std::vector<InertialEpoch> knots = join_epochs(run.made.epochs, run.made.knots);
   if (closures.size() >= count) return {{all_rests, 1.0}};
   const std::vector<double> left_over = speed_left_over(closures, knots, run, count);
-  const std::vector<std::size_t> candidates = doubtful(left_over);
   const std::vector<StretchKnots> stretches = stretches_in(knots);
-  if (candidates.empty() || stretches.size() != count) return {{all_rests, 1.0}};
-  if (candidates.size() > most_doubtful) return {};
-  const std::vector<std::vector<QuietStretch>> other = kinds_besides_rest(stretches);
+  const Candidates candidates{doubtful(left_over), kinds_besides_rest(stretches)};
+  if (candidates.at.empty() || stretches.size() != count) return {{all_rests, 1.0}};
+  if (candidates.at.size() > most_doubtful) return {};
   const std::vector<double> noise = rest_noises(signal);
   const double quietest = std::ranges::min(noise);
-  std::vector<std::uint8_t> how_many;
-  for (const std::size_t i : candidates)
-    how_many.push_back(static_cast<std::uint8_t>(1 + other[i].size()));
-  const auto kinds_of = [&](const Choice& choice) {
-    std::vector<QuietStretch> kinds = all_rests;
-    for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (choice[i] > 0) kinds[candidates[i]] = other[candidates[i]][choice[i] - 1U];
-    return kinds;
-  };
-  Choice accelerating;
-  for (const std::size_t i : candidates)
-    accelerating.push_back(
-        other[i].back() == QuietStretch::plateau ? static_cast<std::uint8_t>(other[i].size()) : 0);
-  const std::array<Choice, 3> starts{
-      Choice(candidates.size(), 0),
-      by_summed_velocities(closures, stretches, knots, other, candidates), accelerating};
-  const Climb climb(how_many, starts, [&](const Choice& choice) {
-    const std::vector<QuietStretch> kinds = kinds_of(choice);
+  const std::array<Choice, 3> starts{Choice(candidates.at.size(), 0),
+                                     by_summed_velocities(closures, stretches, knots, candidates),
+                                     candidates.accelerating()};
+  const Climb climb(candidates.counts(), starts, [&](const Choice& choice) {
+    const std::vector<QuietStretch> kinds = candidates.kinds_of(choice);
     if (std::ranges::find(kinds, QuietStretch::rest) == kinds.end())
       return -std::numeric_limits<double>::infinity();
     double log = log_evidence_of(kinds, stretches, knots, run) + log_prior(kinds) +
                  log_prior_of_tilts(kinds, left_over);
-    for (const std::size_t i : candidates)
+    for (const std::size_t i : candidates.at)
       log += log_loudness_density(quietest > 0.0 ? std::log(noise[i] / quietest) : 0.0, kinds[i]);
     return log;
   });
-  const auto log_of = [](const auto& one) { return one.second; };
-  const double best = std::ranges::max_element(climb.seen(), {}, log_of)->second;
-  double sum = 0.0;
-  for (const auto& [choice, log] : climb.seen()) sum += std::exp(log - best);
-  std::vector<StopHypothesis> hypotheses;
-  for (const auto& [choice, log] : climb.seen())
-    hypotheses.push_back({kinds_of(choice), std::exp(log - best) / sum});
+  std::vector<StopHypothesis> hypotheses = hypotheses_of(climb.seen(), candidates);
   allow_for_tilts(signal, stretches, knots, hypotheses);
   std::ranges::sort(hypotheses, std::greater{}, &StopHypothesis::probability);
   std::erase_if(hypotheses, [](const StopHypothesis& one) { return one.probability < 1e-3; });

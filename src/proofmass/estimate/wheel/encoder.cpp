@@ -166,57 +166,83 @@ void join_missed(const EncoderOffsets& offsets, std::vector<signal::CountSlip>& 
   missed = std::move(joined);
 }
 
-/// Removes missed counts from out.encoder and fits it to gravity, until nothing changes. More steps
-/// than turns, or some whose removal does not improve the fit, are not missed counts; then none is
-/// removed.
+/// Removes missed counts from an encoder's fixes. More steps than turns, or some whose removal does
+/// not improve the fit, are not missed counts; then none is removed.
+class MissedCounts {
+ public:
+  explicit MissedCounts(EncoderTrack& track)
+      : track_(track),
+        step_rad_(track.encoder.step_rad),
+        as_recorded_(track.encoder.fixes),
+        removes_(step_rad_ > 0.0) {}
+
+  /// Looks for missed counts in the residuals of a fit. Returns whether those removed changed.
+  bool update(const WheelReadings& readings,
+              const std::vector<EncoderMotion>& motion,
+              GravityFit& fit) {
+    if (!with_all_) with_all_ = fit;
+    if (!removes_) return false;
+    const bool changed = look(offsets_of(readings, motion, fit));
+    removes_ = static_cast<double>(track_.missed.size()) <= range_of(motion) / rad_per_turn;
+    if (!removes_) {
+      track_.missed.clear();
+      fit = *with_all_;
+    }
+    track_.encoder.fixes = as_recorded_;
+    signal::remove_slips(track_.missed, step_rad_, track_.encoder.fixes);
+    return changed;
+  }
+
+  /// The better of the fit without the missed counts and the first one.
+  GravityFit better(const GravityFit& fit) {
+    if (track_.missed.empty() || fit.variance_m2ps4() < with_all_->variance_m2ps4()) return fit;
+    track_.missed.clear();
+    track_.encoder.fixes = as_recorded_;
+    return *with_all_;
+  }
+
+ private:
+  bool look(EncoderOffsets offsets) {
+    std::vector<signal::CountSlip>& missed = track_.missed;
+    keep_quiet(offsets);
+    join_missed(offsets, missed);
+    const bool relocated =
+        signal::relocate_slips(offsets.time_s, offsets.offset_rad, step_rad_, missed);
+    const auto found = further_missed(offsets, missed, step_rad_);
+    missed.insert(missed.end(), found.begin(), found.end());
+    join_missed(offsets, missed);
+    return relocated || !found.empty();
+  }
+
+  EncoderTrack& track_;
+  double step_rad_;
+  signal::AngleFixes as_recorded_;
+  bool removes_;
+  std::optional<GravityFit> with_all_{};
+};
+
+/// Removes missed counts from out.encoder and fits it to gravity, until nothing changes.
 GravityFit compare_with_gravity(const WheelReadings& readings, EncoderTrack& out) {
   // Parabolas of other fixes may move the fit forth and back by half a standard deviation for ever.
   constexpr int fewest_rounds = 3, enough_rounds = 8, most_rounds = 16;
   constexpr double small_move = 0.1;
   GravityFit fit(readings.delay_s, out.encoder.errors_rad.value_or(uncalibrated_errors_rad),
                  readings.one_speed, readings.gravity_mps2);
-  const signal::AngleFixes as_recorded = out.encoder.fixes;
-  std::optional<GravityFit> with_all;
-  const double step_rad = out.encoder.step_rad;
-  // Missed counts are looked for when the delay is known, which would resemble them.
-  bool removes = step_rad > 0.0, settled = false;
+  MissedCounts missed(out);
+  bool settled = false;
   int rounds_since_change = 0;
   for (int round = 1; round <= most_rounds; ++round) {
     const auto motion = motion_of(fit.corrected(out.encoder.fixes), readings.time_s,
                                   fit.figure(GravityFit::delay).value);
     fit.step(readings, motion);
     const bool has_converged = fit.last_move() < small_move;
+    // Missed counts are looked for when the delay is known, which would resemble them.
     settled = settled || (round >= fewest_rounds && has_converged) || round >= enough_rounds;
     if (!settled) continue;
-    bool changed = false;
-    ++rounds_since_change;
-    if (!with_all) with_all = fit;
-    if (removes) {
-      EncoderOffsets offsets = offsets_of(readings, motion, fit);
-      keep_quiet(offsets);
-      join_missed(offsets, out.missed);
-      changed = signal::relocate_slips(offsets.time_s, offsets.offset_rad, step_rad, out.missed);
-      const auto found = further_missed(offsets, out.missed, step_rad);
-      changed = changed || !found.empty();
-      out.missed.insert(out.missed.end(), found.begin(), found.end());
-      join_missed(offsets, out.missed);
-      removes = static_cast<double>(out.missed.size()) <= range_of(motion) / rad_per_turn;
-      if (!removes) {
-        out.missed.clear();
-        fit = *with_all;
-      }
-      out.encoder.fixes = as_recorded;
-      signal::remove_slips(out.missed, step_rad, out.encoder.fixes);
-    }
-    if (changed) rounds_since_change = 0;
+    rounds_since_change = missed.update(readings, motion, fit) ? 0 : rounds_since_change + 1;
     if (rounds_since_change >= fewest_rounds && has_converged) break;
   }
-  if (!out.missed.empty() && !(fit.variance_m2ps4() < with_all->variance_m2ps4())) {
-    out.missed.clear();
-    out.encoder.fixes = as_recorded;
-    return *with_all;
-  }
-  return fit;
+  return missed.better(fit);
 }
 
 /// Uncertainty of the delay from counts that repeat in step with the samples: at some speeds the
@@ -240,6 +266,71 @@ void align(const WheelEncoder& encoder, const Alignment& to, WheelReadings& read
   readings.encoder->direction = to.direction;
   readings.encoder->zero_rad = to.zero_rad;
 }
+
+/// The encoder's own errors that fixes rounded to whole counts would show at several positions of
+/// the counts, beyond those of white rounding errors.
+class CoherentRounding {
+ public:
+  explicit CoherentRounding(double step_rad) : step_rad_(step_rad) {
+    sums_.fill(Mat<count>::Zero());
+  }
+
+  /// A fix at the angle psi, `half` after one sample and before the next. Stamped edges are not
+  /// rounded.
+  void add(double psi, double half, double variance_rad2) {
+    const double widest_rad = std::min(2.0 * std::abs(half), step_rad_);
+    if (variance_rad2 < 0.25 * square(widest_rad) / 12.0) return;
+    Mat<count> x = Mat<count>::Ones();
+    for (int n = 1; n <= wheel::encoder_orders; ++n) {
+      x(2 * n - 1) = std::cos(n * psi);
+      x(2 * n) = std::sin(n * psi);
+    }
+    const double weight = 1.0 / variance_rad2;
+    normal_ += weight * x * x.transpose();
+    for (std::size_t i = 0; i < positions; ++i) {
+      double shift = static_cast<double>(i) / positions;
+      for (int at = 1; at < count; ++at)
+        shift += own_error * signs[i][static_cast<std::size_t>(at - 1)] * x(at);
+      const double before = std::floor((psi - half) / step_rad_ - shift);
+      const double after = std::floor((psi + half) / step_rad_ - shift);
+      // As signal::fixes_of_samples(): the boundary, or the mean of the counts' middles.
+      const double fix =
+          std::abs(after - before) == 1.0 ? std::max(before, after) : 0.5 * (before + after) + 0.5;
+      sums_[i] += weight * ((fix + shift) * step_rad_ - psi) * x;
+    }
+  }
+
+  [[nodiscard]] std::array<double, wheel::encoder_states - 1> std_rad() const {
+    std::array<double, count - 1> out{};
+    if (!(normal_(0, 0) > 0.0)) return out;
+    const Mat<count, count> white = positive_inverse(normal_);
+    for (int at = 1; at < count; ++at) {
+      double squares = 0.0;
+      for (const Mat<count>& sum : sums_) squares += square(white.row(at).dot(sum));
+      out[static_cast<std::size_t>(at - 1)] =
+          std::sqrt(std::max(squares / positions - white(at, at), 0.0));
+    }
+    return out;
+  }
+
+ private:
+  static constexpr int count = wheel::encoder_states;
+  static constexpr std::size_t positions = 8;
+  // The estimated angle follows a part of the rounding: its errors may differ by a twentieth of a
+  // count, with these signs.
+  static constexpr double own_error = 0.05;
+  static constexpr std::array<std::array<int, count - 1>, positions> signs{{{1, 1, 1, 1},
+                                                                            {1, -1, 1, -1},
+                                                                            {1, 1, -1, -1},
+                                                                            {1, -1, -1, 1},
+                                                                            {-1, -1, -1, -1},
+                                                                            {-1, 1, -1, 1},
+                                                                            {-1, -1, 1, 1},
+                                                                            {-1, 1, 1, -1}}};
+  double step_rad_;
+  Mat<count, count> normal_ = Mat<count, count>::Zero();
+  std::array<Mat<count>, positions> sums_;
+};
 
 }  // namespace
 
@@ -289,24 +380,8 @@ std::array<double, wheel::encoder_states - 1> coherent_rounding_rad(
     const EncoderReadings& encoder,
     const std::vector<double>& time_s,
     const std::vector<double>& own_rad) {
-  constexpr int count = wheel::encoder_states;
-  constexpr std::size_t positions = 8;
-  // The estimated angle follows a part of the rounding: its errors may differ by a twentieth of a
-  // count, with these signs.
-  constexpr double own_error = 0.05;
-  constexpr std::array<std::array<int, count - 1>, positions> signs{{{1, 1, 1, 1},
-                                                                     {1, -1, 1, -1},
-                                                                     {1, 1, -1, -1},
-                                                                     {1, -1, -1, 1},
-                                                                     {-1, -1, -1, -1},
-                                                                     {-1, 1, -1, 1},
-                                                                     {-1, -1, 1, 1},
-                                                                     {-1, 1, 1, -1}}};
-  std::array<double, count - 1> out{};
-  if (!(encoder.step_rad > 0.0)) return out;
-  Mat<count, count> normal = Mat<count, count>::Zero();
-  std::array<Mat<count>, positions> sums;
-  sums.fill(Mat<count>::Zero());
+  if (!(encoder.step_rad > 0.0)) return {};
+  CoherentRounding rounding(encoder.step_rad);
   double last_rad = no_angle, last_s = 0.0;
   for (std::size_t k = 0; k < own_rad.size(); ++k) {
     const double psi = own_rad[k];
@@ -318,38 +393,9 @@ std::array<double, wheel::encoder_states - 1> coherent_rounding_rad(
     const bool is_next = k > 0 && at_s - last_s < 1.5 * (time_s[k] - time_s[k - 1]);
     last_rad = psi;
     last_s = at_s;
-    if (!is_next || std::isnan(half)) continue;
-    // Stamped edges are not rounded.
-    const double widest_rad = std::min(2.0 * std::abs(half), encoder.step_rad);
-    if (encoder.variance_rad2[k] < 0.25 * square(widest_rad) / 12.0) continue;
-    Mat<count> x = Mat<count>::Ones();
-    for (int n = 1; n <= wheel::encoder_orders; ++n) {
-      x(2 * n - 1) = std::cos(n * psi);
-      x(2 * n) = std::sin(n * psi);
-    }
-    const double weight = 1.0 / encoder.variance_rad2[k];
-    normal += weight * x * x.transpose();
-    for (std::size_t i = 0; i < positions; ++i) {
-      double shift = static_cast<double>(i) / positions;
-      for (int at = 1; at < count; ++at)
-        shift += own_error * signs[i][static_cast<std::size_t>(at - 1)] * x(at);
-      const double before = std::floor((psi - half) / encoder.step_rad - shift);
-      const double after = std::floor((psi + half) / encoder.step_rad - shift);
-      // As signal::fixes_of_samples(): the boundary, or the mean of the counts' middles.
-      const double fix =
-          std::abs(after - before) == 1.0 ? std::max(before, after) : 0.5 * (before + after) + 0.5;
-      sums[i] += weight * ((fix + shift) * encoder.step_rad - psi) * x;
-    }
+    if (is_next && !std::isnan(half)) rounding.add(psi, half, encoder.variance_rad2[k]);
   }
-  if (!(normal(0, 0) > 0.0)) return out;
-  const Mat<count, count> white = positive_inverse(normal);
-  for (int at = 1; at < count; ++at) {
-    double squares = 0.0;
-    for (const Mat<count>& sum : sums) squares += square(white.row(at).dot(sum));
-    out[static_cast<std::size_t>(at - 1)] =
-        std::sqrt(std::max(squares / positions - white(at, at), 0.0));
-  }
-  return out;
+  return rounding.std_rad();
 }
 
 Result<EncoderTrack> encoder_track(const WheelEncoder& encoder, WheelReadings& readings) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "proofmass/core/in_parallel.hpp"
@@ -34,6 +36,49 @@ Uncertain delay_of(const WheelOptions& options, double rate_hz) {
   return {mean, std::sqrt(square - mean * mean)};
 }
 
+/// The usable rows of one sensor in order of time. Its stamps are late by late_s.
+class UsableRows {
+ public:
+  UsableRows(const WheelSensor& sensor, const Screened& screened, double late_s)
+      : time_s_(sensor.time_s), usable_(screened.usable), late_s_(late_s) {
+    skip_unusable();
+  }
+  [[nodiscard]] bool ended() const { return next_ == time_s_.size(); }
+  [[nodiscard]] double time_s() const { return time_s_[next_] - late_s_; }
+  std::int64_t take() {
+    const auto row = static_cast<std::int64_t>(next_++);
+    skip_unusable();
+    return row;
+  }
+
+ private:
+  void skip_unusable() {
+    while (!ended() && !usable_[next_]) ++next_;
+  }
+
+  const std::vector<double>& time_s_;
+  const std::vector<bool>& usable_;
+  double late_s_;
+  std::size_t next_ = 0;
+};
+
+/// The epochs of one or two sensors on one time line.
+void merge_rows(std::vector<UsableRows> sensors, WheelReadings& readings) {
+  for (;;) {
+    double t = std::numeric_limits<double>::infinity();
+    for (const UsableRows& rows : sensors)
+      if (!rows.ended()) t = std::min(t, rows.time_s());
+    if (std::isinf(t)) return;
+    WheelEpoch epoch;
+    epoch.dt_s = readings.time_s.empty() ? 0.0 : t - readings.time_s.back();
+    for (std::size_t s = 0; s < sensors.size(); ++s)
+      if (!sensors[s].ended() && sensors[s].time_s() - t < same_epoch_s)
+        epoch.row[s] = sensors[s].take();
+    readings.time_s.push_back(t);
+    readings.epochs.push_back(epoch);
+  }
+}
+
 /// The time line of one or two sensors; the second's stamps are late by offset_s.
 WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
                     const std::vector<const Prepared*>& prepared,
@@ -46,37 +91,19 @@ WheelReadings merge(const std::vector<const WheelSensor*>& sensors,
   readings.gravity_mps2 = gravity.value;
   readings.gravity_std_mps2 = gravity.std;
   readings.given_rolling_radius_m = options.rolling_radius_m;
+  std::vector<UsableRows> rows;
+  std::size_t most = 0;
   for (std::size_t s = 0; s < sensors.size(); ++s) {
     const WheelPlane& plane = prepared[s]->plane;
     readings.sensors.push_back(project(*sensors[s], prepared[s]->screened, plane));
     if (!sensors[s]->accel_mps2[2].empty())
       readings.sensors.back().axle_slope = plane.axial_mps2 / readings.gravity_mps2;
+    rows.emplace_back(*sensors[s], prepared[s]->screened, s == 0 ? 0.0 : offset_s);
+    most = std::max(most, sensors[s]->time_s.size());
   }
-  std::array<std::size_t, 2> next{};
-  const auto skip_unusable = [&](std::size_t s) {
-    while (next[s] < sensors[s]->time_s.size() && !prepared[s]->screened.usable[next[s]]) ++next[s];
-    return next[s] < sensors[s]->time_s.size();
-  };
-  const auto time_of = [&](std::size_t s) {
-    return sensors[s]->time_s[next[s]] - (s == 0 ? 0.0 : offset_s);
-  };
-  std::size_t most = 0;
-  for (const WheelSensor* sensor : sensors) most = std::max(most, sensor->time_s.size());
   readings.time_s.reserve(most);  // of sensors with common stamps
   readings.epochs.reserve(most);
-  for (;;) {
-    std::array<bool, 2> has{};
-    for (std::size_t s = 0; s < sensors.size(); ++s) has[s] = skip_unusable(s);
-    if (!has[0] && !has[1]) break;
-    const double t = has[0] && has[1] ? std::min(time_of(0), time_of(1)) : time_of(has[0] ? 0 : 1);
-    WheelEpoch epoch;
-    epoch.dt_s = readings.time_s.empty() ? 0.0 : t - readings.time_s.back();
-    for (std::size_t s = 0; s < sensors.size(); ++s)
-      if (has[s] && time_of(s) - t < same_epoch_s)
-        epoch.row[s] = static_cast<std::int64_t>(next[s]++);
-    readings.time_s.push_back(t);
-    readings.epochs.push_back(epoch);
-  }
+  merge_rows(std::move(rows), readings);
   if (!readings.epochs.empty()) {
     mark_standing(readings);
     mark_jerks(readings);
@@ -176,6 +203,77 @@ Error no_gravity_in(const WheelSensor& sensor) {
           std::move(advice)};
 }
 
+Error angle_lost_in(const WheelSensor& sensor) {
+  return {Errc::not_observable,
+          sensor.name +
+              ": the angle was lost: the wheel turns by more than an eighth of a turn "
+              "between samples, or vibrates too strongly; record at a higher rate, or "
+              "analyse a part of the recording",
+          {Advice{"from"}, Advice{"to"}}};
+}
+
+/// Fits from the track that the encoder shows.
+Result<Single> fit_along_encoder(const WheelSensor& sensor,
+                                 Single single,
+                                 FitDepth depth,
+                                 const WheelOptions& options) {
+  auto along = encoder_track(*options.encoder, single.readings);
+  if (!along) return along.error();
+  if (!(along->track.lost <= not_a_wheel)) return no_gravity_in(sensor);
+  single.fit = fit_with_radius(single.readings, along->track, depth, options);
+  if (has_lost(single.fit, along->track.lost)) return angle_lost_in(sensor);
+  single.encoder = std::move(along).value();
+  return single;
+}
+
+/// A fit, and the share of measurements that its initial track did not explain.
+struct Sought {
+  WheelFit fit;
+  double begun_lost = 0.0;
+};
+
+/// Fits from the track found by one of the searches; nullopt if that is not a wheel in gravity.
+std::optional<Sought> fit_from_search(WheelReadings& readings,
+                                      std::size_t seek,
+                                      FitDepth depth,
+                                      const WheelOptions& options) {
+  WheelTrack track = find_track(readings, seek);
+  const double begun_lost = track.lost;
+  const bool explained = begun_lost <= not_a_wheel;
+  if (!explained && !shows_gravity(readings, track)) return std::nullopt;
+  Sought sought{fit_with_radius(readings, std::move(track), depth, options), begun_lost};
+  // A smoothed track follows white noise, too, but a fit with ripple does not explain it.
+  if (!explained && sought.fit.track.lost > not_a_wheel) return std::nullopt;
+  return sought;
+}
+
+/// Fits from the phase of gravity, searched for in several ways until a fit is certain.
+Result<Single> fit_along_gravity(const WheelSensor& sensor,
+                                 Single single,
+                                 FitDepth depth,
+                                 const WheelOptions& options) {
+  const double fastest = fastest_radps(single.readings.rate_hz());
+  bool followed = false;
+  double least_lost = 1.0;
+  std::optional<Single> unsure;
+  for (std::size_t seek = 0; seek < wheel_seeks; ++seek) {
+    auto sought = fit_from_search(single.readings, seek, depth, options);
+    if (!sought) break;
+    single.fit = std::move(sought->fit);
+    followed = true;
+    least_lost = std::min(least_lost, sought->begun_lost);
+    if (top_speed_radps(single.fit) > fastest || has_lost(single.fit, least_lost)) continue;
+    // A fit that explains more but whose turns are uncertain outweighs a certain one.
+    const bool explains_less = unsure && unsure->fit.track.lost < single.fit.track.lost;
+    const bool outweighed =
+        explains_less && std::abs(unsure->fit.turns.value - single.fit.turns.value) > 0.5;
+    if (single.fit.doubts.empty() && !outweighed) return single;
+    if (!explains_less) unsure = single;
+  }
+  if (unsure) return *std::move(unsure);
+  return followed ? angle_lost_in(sensor) : no_gravity_in(sensor);
+}
+
 Result<Single> fit_single(const WheelSensor& sensor,
                           Prepared prepared,
                           FitDepth depth,
@@ -188,47 +286,8 @@ Result<Single> fit_single(const WheelSensor& sensor,
     return no_gravity_in(sensor);
   single.readings.delay_s = delay_of(options, single.readings.rate_hz());
   if (options.progress) options.progress("looking for the wheel's phase", 0.0);
-  const double fastest = fastest_radps(single.readings.rate_hz());
-  bool followed = false;
-  std::optional<Single> unsure;
-  if (options.encoder) {
-    auto along = encoder_track(*options.encoder, single.readings);
-    if (!along) return along.error();
-    followed = along->track.lost <= not_a_wheel;
-    if (followed) single.fit = fit_with_radius(single.readings, along->track, depth, options);
-    if (followed && !has_lost(single.fit, along->track.lost)) {
-      single.encoder = std::move(along).value();
-      return single;
-    }
-  }
-  double least_lost = 1.0;
-  for (std::size_t seek = 0; !options.encoder && seek < wheel_seeks; ++seek) {
-    WheelTrack track = find_track(single.readings, seek);
-    const double begun_lost = track.lost;
-    const bool explained = begun_lost <= not_a_wheel;
-    if (!explained && !shows_gravity(single.readings, track)) break;
-    single.fit = fit_with_radius(single.readings, std::move(track), depth, options);
-    // A smoothed track follows white noise, too, but a fit with ripple does not explain it.
-    if (!explained && single.fit.track.lost > not_a_wheel) break;
-    followed = true;
-    least_lost = std::min(least_lost, begun_lost);
-    if (top_speed_radps(single.fit) > fastest || has_lost(single.fit, least_lost)) continue;
-    // A fit that explains more but whose turns are uncertain outweighs a certain one.
-    const bool explains_less = unsure && unsure->fit.track.lost < single.fit.track.lost;
-    if (single.fit.doubts.empty() &&
-        !(explains_less && std::abs(unsure->fit.turns.value - single.fit.turns.value) > 0.5))
-      return single;
-    if (!explains_less) unsure = single;
-  }
-  if (unsure) return *std::move(unsure);
-  if (followed)
-    return Error{Errc::not_observable,
-                 sensor.name +
-                     ": the angle was lost: the wheel turns by more than an eighth of a turn "
-                     "between samples, or vibrates too strongly; record at a higher rate, or "
-                     "analyse a part of the recording",
-                 {Advice{"from"}, Advice{"to"}}};
-  return no_gravity_in(sensor);
+  return options.encoder ? fit_along_encoder(sensor, std::move(single), depth, options)
+                         : fit_along_gravity(sensor, std::move(single), depth, options);
 }
 
 Result<Single> fit_single(const WheelSensor& sensor, FitDepth depth, const WheelOptions& options) {
@@ -250,6 +309,50 @@ void forget_measurements(WheelReadings& readings) {
 
 WheelMotion motion_of(const WheelFit& fit) {
   return {&fit.series.time_s, &fit.series.angle_rad, &fit.series.speed_radps};
+}
+
+/// The encoder is on the clock of the first sensor.
+WheelOptions options_of_second(WheelOptions options) {
+  if (!options.clocks_shared) options.encoder.reset();
+  return options;
+}
+
+/// Each sensor alone, in parallel.
+Result<std::vector<Single>> fit_each(const std::vector<WheelSensor>& sensors,
+                                     const WheelOptions& options) {
+  const FitDepth depth = sensors.size() == 1 ? FitDepth::whole : FitDepth::track;
+  std::vector<std::optional<Result<Single>>> fits(sensors.size());
+  in_parallel(sensors.size(), options.progress, [&](std::size_t s, Progress progress) {
+    WheelOptions of_sensor = s == 0 ? options : options_of_second(options);
+    if (sensors.size() > 1) of_sensor.progress = std::move(progress);  // else with its own stages
+    fits[s] = fit_single(sensors[s], depth, of_sensor);
+  });
+  std::vector<Single> singles;
+  singles.reserve(sensors.size());
+  for (auto& single : fits) {
+    if (!*single) return single->error();
+    singles.push_back(std::move(*single).value());
+  }
+  return singles;
+}
+
+/// The clock and phase of the second sensor relative to the first.
+Result<ClockFit> relate(const Single& first, const Single& second, const WheelOptions& options) {
+  const WheelMotion one = motion_of(first.fit), two = motion_of(second.fit);
+  // Two angles by one encoder agree whatever the stamps of the sensors: their small difference,
+  // against the speed, would be a significant and wrong offset.
+  const bool one_encoder = first.encoder && second.encoder;
+  const auto found =
+      one_encoder ? fit_phase(one, two) : fit_clocks(one, two, options.clocks_shared);
+  if (!found) return found.error().at("two sensors");
+  if (!options.clocks_shared) return found;
+  ClockFit clocks = *found;
+  // With a shared clock an offset must be clearly significant before the stamps are declared wrong,
+  // which it is not if an angle was lost.
+  Uncertain& offset_s = clocks.offset_s;
+  const bool lost = !first.fit.doubts.empty() || !second.fit.doubts.empty();
+  if (lost || std::abs(offset_s.value) < std::max(5.0 * offset_s.std, 2e-4)) offset_s.value = 0.0;
+  return clocks;
 }
 
 }  // namespace
@@ -279,47 +382,24 @@ Eigen::VectorXd places_in(const WheelFit& fit, std::size_t sensors) {
 }
 
 Result<Pair> fit_singles(const std::vector<WheelSensor>& sensors, const WheelOptions& options) {
-  Pair pair;
-  const FitDepth depth = sensors.size() == 1 ? FitDepth::whole : FitDepth::track;
-  // The encoder is on the clock of the first sensor.
-  WheelOptions of_second = options;
-  if (!options.clocks_shared) of_second.encoder.reset();
-  std::vector<std::optional<Result<Single>>> fits(sensors.size());
-  in_parallel(sensors.size(), options.progress, [&](std::size_t s, Progress progress) {
-    WheelOptions of_sensor = s == 0 ? options : of_second;
-    if (sensors.size() > 1) of_sensor.progress = std::move(progress);  // else with its own stages
-    fits[s] = fit_single(sensors[s], depth, of_sensor);
-  });
-  pair.singles.reserve(sensors.size());
-  for (auto& single : fits) {
-    if (!*single) return single->error();
-    pair.singles.push_back(std::move(*single).value());
-  }
+  auto singles = fit_each(sensors, options);
+  if (!singles) return singles.error();
+  Pair pair{std::move(singles).value(), {}};
   if (pair.singles.size() == 1) return pair;
   // Less than a hundredth of a turn does not determine the direction.
   const double way = pair.singles[0].fit.turns.value * pair.singles[1].fit.turns.value;
   if (way < -1e-4 && !options.spin_axis) {
     Prepared other = pair.singles[1].prepared;
     other.plane = turned_over(other.plane);
-    auto again = fit_single(sensors[1], std::move(other), depth, of_second);
+    auto again =
+        fit_single(sensors[1], std::move(other), FitDepth::track, options_of_second(options));
     if (!again) return again.error();
     pair.singles[1] = std::move(again).value();
   }
   for (Single& single : pair.singles) forget_measurements(single.readings);
-  const WheelMotion one = motion_of(pair.singles[0].fit), two = motion_of(pair.singles[1].fit);
-  // Two angles by one encoder agree whatever the stamps of the sensors: their small difference,
-  // against the speed, would be a significant and wrong offset.
-  const bool one_encoder = pair.singles[0].encoder && pair.singles[1].encoder;
-  const auto clocks =
-      one_encoder ? fit_phase(one, two) : fit_clocks(one, two, options.clocks_shared);
-  if (!clocks) return clocks.error().at("two sensors");
+  const auto clocks = relate(pair.singles[0], pair.singles[1], options);
+  if (!clocks) return clocks.error();
   pair.clocks = *clocks;
-  // With a shared clock an offset must be clearly significant before the stamps are declared wrong,
-  // which it is not if an angle was lost.
-  const bool lost = !pair.singles[0].fit.doubts.empty() || !pair.singles[1].fit.doubts.empty();
-  if (options.clocks_shared && (lost || std::abs(pair.clocks.offset_s.value) <
-                                            std::max(5.0 * pair.clocks.offset_s.std, 2e-4)))
-    pair.clocks.offset_s.value = 0.0;
   return pair;
 }
 

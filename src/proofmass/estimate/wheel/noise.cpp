@@ -21,6 +21,15 @@ struct NoiseStretch {
   [[nodiscard]] double variance() const {
     return std::max(std::max(innovation2 - explained, 0.2 * innovation2) / readings, least);
   }
+  /// Adds a measurement's update, given its present noise variance. Strongly down-weighted
+  /// measurements contain little information on the noise.
+  template <class Update>
+  void add(const Update& update, double noise_variance) {
+    if (!update.used) return;
+    innovation2 += std::min(update.nis(), 4.0 * wheel_gate.huber) * update.expected;
+    explained += update.expected - noise_variance;
+    readings += 1.0;
+  }
   void append(const NoiseStretch& later) {
     innovation2 += later.innovation2;
     explained += later.explained;
@@ -30,6 +39,17 @@ struct NoiseStretch {
 
 /// The stretches of each sensor, and sums over the whole recording for what does not change.
 struct GatheredNoise {
+  explicit GatheredNoise(std::size_t count) {
+    for (auto& of_sensor : stretches) of_sensor.resize(count);
+  }
+  void append(const GatheredNoise& later) {
+    for (std::size_t s = 0; s < stretches.size(); ++s) {
+      for (std::size_t i = 0; i < stretches[s].size(); ++i)
+        stretches[s][i].append(later.stretches[s][i]);
+      gyros[s].append(later.gyros[s]);
+    }
+  }
+
   std::array<std::vector<NoiseStretch>, 2> stretches;
   std::array<NoiseStretch, 2> gyros;
   FixScatter fixes;
@@ -96,28 +116,19 @@ void gather(const WheelReadings& readings,
   for (std::size_t s = 0; s < readings.sensors.size() && channel < step.count; ++s) {
     const std::int64_t row = readings.epochs[k].row[s];
     if (row == WheelEpoch::no_row) continue;
+    const PlanarReadings& sensor = readings.sensors[s];
     const auto at = static_cast<std::size_t>(row);
-    if (!readings.sensors[s].has(at)) continue;
-    for (int axis = 0; axis < 2; ++axis, ++channel) {
-      const auto& u = step.updates[static_cast<std::size_t>(channel)];
-      if (!u.used) continue;
-      // Strongly down-weighted measurements contain little information on the noise.
-      NoiseStretch& sums = noise.stretches[s][stretch];
-      sums.innovation2 += std::min(u.nis(), 4.0 * wheel_gate.huber) * u.expected;
-      sums.explained += u.expected - readings.sensors[s].variance_m2ps4[at];
-      sums.readings += 1.0;
-    }
-    const auto& speeds = readings.sensors[s].speed_radps;
-    if (speeds.empty() || std::isnan(speeds[at])) continue;
+    if (!sensor.has(at)) continue;
+    for (int axis = 0; axis < 2; ++axis, ++channel)
+      noise.stretches[s][stretch].add(step.updates[static_cast<std::size_t>(channel)],
+                                      sensor.variance_m2ps4[at]);
+    if (sensor.speed_radps.empty() || std::isnan(sensor.speed_radps[at])) continue;
     const auto& u = step.updates[static_cast<std::size_t>(channel++)];
-    if (!u.used) continue;
     // At the start the state's variance is thousands of times the noise's: a few such epochs would
     // outweigh all others.
     constexpr double most_explained = 10.0;
-    if (u.expected > most_explained * readings.sensors[s].speed_variance) continue;
-    noise.gyros[s].innovation2 += std::min(u.nis(), 4.0 * wheel_gate.huber) * u.expected;
-    noise.gyros[s].explained += u.expected - readings.sensors[s].speed_variance;
-    noise.gyros[s].readings += 1.0;
+    if (u.expected <= most_explained * sensor.speed_variance)
+      noise.gyros[s].add(u, sensor.speed_variance);
   }
   if (!readings.encoder || !readings.encoder->has(k)) return;
   const auto& u = step.updates[static_cast<std::size_t>(channel)];
@@ -242,19 +253,14 @@ FilterState<wheel::states(S)> state_on_path(WheelModel<S>& model,
 /// Search limits of the motion noise. A bias that drifted faster could replace gravity.
 constexpr WheelNoise lowest{1e-9, 1e-9, 1e-10}, highest{1e5, 1e8, 1e-4};
 
-}  // namespace
-
+/// Gathers over the whole recording; long ones in two halves side by side.
 template <int S>
-void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings) {
+void gather_all(const WheelModel<S>& model,
+                const WheelPrior& prior,
+                const WheelReadings& readings,
+                double length_s,
+                GatheredNoise& noise) {
   const double start_s = readings.time_s.front();
-  const double length_s = std::max(0.5, 40.0 / std::max(readings.rate_hz(), 1e-9));
-  const auto count = static_cast<std::size_t>((readings.time_s.back() - start_s) / length_s) + 1;
-  GatheredNoise noise;
-  for (auto& of_sensor : noise.stretches) of_sensor.resize(count);
-  for (std::size_t s = 0; model.about != nullptr && s < readings.sensors.size(); ++s) {
-    const bool shakes = set_least(model, readings, s, length_s, noise.stretches[s]);
-    if (s == 0) readings.shakes = shakes;
-  }
   const auto gather_from = [&](std::size_t first, std::size_t last, GatheredNoise& into) {
     auto part = model;
     auto state = first == 0 ? prior_state<S>(prior) : state_on_path(part, first, prior);
@@ -263,34 +269,53 @@ void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelR
       gather<S>(readings, k, step, stretch, into);
     });
   };
-  if (const std::size_t size = model.size();
-      size < worth_a_thread || model.about == nullptr || readings.encoder) {
+  const std::size_t size = model.size();
+  if (size < worth_a_thread || model.about == nullptr || readings.encoder) {
     gather_from(0, size, noise);
   } else {
-    GatheredNoise later;
-    for (auto& of_sensor : later.stretches) of_sensor.resize(count);
+    GatheredNoise later(noise.stretches[0].size());
     run_tasks(size, {[&] { gather_from(0, size / 2, noise); },
                      [&] { gather_from(size / 2, size, later); }});
-    for (std::size_t s = 0; s < 2; ++s) {
-      for (std::size_t i = 0; i < count; ++i) noise.stretches[s][i].append(later.stretches[s][i]);
-      noise.gyros[s].append(later.gyros[s]);
-    }
+    noise.append(later);
   }
+}
+
+/// Sets the variance of each measurement of a sensor.
+void set_variance(std::size_t s,
+                  const VarianceProfile& profile,
+                  double least,
+                  WheelReadings& readings) {
+  for (std::size_t k = 0; k < readings.epochs.size(); ++k) {
+    const std::int64_t row = readings.epochs[k].row[s];
+    if (row != WheelEpoch::no_row)
+      readings.sensors[s].variance_m2ps4[static_cast<std::size_t>(row)] =
+          std::max(profile.at(readings.time_s[k] - readings.time_s.front()), least);
+  }
+}
+
+}  // namespace
+
+template <int S>
+void settle_variance(const WheelModel<S>& model, const WheelPrior& prior, WheelReadings& readings) {
+  const double length_s = std::max(0.5, 40.0 / std::max(readings.rate_hz(), 1e-9));
+  const double duration_s = readings.time_s.back() - readings.time_s.front();
+  const auto count = static_cast<std::size_t>(duration_s / length_s) + 1;
+  GatheredNoise noise(count);
+  for (std::size_t s = 0; model.about != nullptr && s < readings.sensors.size(); ++s) {
+    const bool shakes = set_least(model, readings, s, length_s, noise.stretches[s]);
+    if (s == 0) readings.shakes = shakes;
+  }
+  gather_all(model, prior, readings, length_s, noise);
   if (const auto of_fixes = noise.fixes.noise()) readings.encoder->more = *of_fixes;
   for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
-    if (noise.gyros[s].readings > 20.0)
+    if (noise.gyros[s].readings > fewest_readings)
       readings.sensors[s].speed_variance = noise.gyros[s].variance();
     const VarianceProfile profile(noise.stretches[s], length_s);
     if (profile.empty()) continue;
     const double least = model.about == nullptr ? 0.0
                                                 : least_variance(readings.sensors[s],
                                                                  readings.rate_hz(), *model.about);
-    for (std::size_t k = 0; k < readings.epochs.size(); ++k) {
-      const std::int64_t row = readings.epochs[k].row[s];
-      if (row != WheelEpoch::no_row)
-        readings.sensors[s].variance_m2ps4[static_cast<std::size_t>(row)] =
-            std::max(profile.at(readings.time_s[k] - start_s), least);
-    }
+    set_variance(s, profile, least, readings);
   }
 }
 
@@ -324,25 +349,33 @@ Excerpt<S> excerpt_to_tune(const WheelModel<S>& model, const WheelPrior& prior) 
 
 namespace {
 
-/// Climbs from `best`: each parameter in turn by steps of a shrinking factor.
+/// Multiplies one parameter by `step` as long as the likelihood increases; returns whether it did.
+template <class Likelihood>
+bool climb_by(double step,
+              double WheelNoise::* figure,
+              const Likelihood& likelihood,
+              TunedNoise& best) {
+  constexpr int most_steps = 8;
+  for (int tries = 0; tries < most_steps; ++tries) {
+    WheelNoise candidate = best.noise;
+    candidate.*figure *= step;
+    if (candidate.*figure < lowest.*figure || candidate.*figure > highest.*figure) return tries > 0;
+    const double value = likelihood(candidate);
+    if (!(value > best.log_likelihood)) return tries > 0;
+    best = {candidate, value};
+  }
+  return true;
+}
+
+/// Climbs from `start`: each parameter in turn by steps of a shrinking factor.
 template <class Likelihood>
 TunedNoise climb(const Likelihood& likelihood, const WheelNoise& start, double first_factor) {
   TunedNoise best{start, likelihood(start)};
   for (double factor = first_factor; factor > 1.4; factor = std::sqrt(factor))
     for (double WheelNoise::* figure :
-         {&WheelNoise::jerk_psd, &WheelNoise::snap_psd, &WheelNoise::bias_walk_psd}) {
-      bool upwards = false;
-      for (const double step : {factor, 1.0 / factor})
-        for (int tries = 0; tries < 8 && !(upwards && step < 1.0); ++tries) {
-          WheelNoise candidate = best.noise;
-          candidate.*figure *= step;
-          if (candidate.*figure < lowest.*figure || candidate.*figure > highest.*figure) break;
-          const double value = likelihood(candidate);
-          if (!(value > best.log_likelihood)) break;
-          best = {candidate, value};
-          upwards = step > 1.0;
-        }
-    }
+         {&WheelNoise::jerk_psd, &WheelNoise::snap_psd, &WheelNoise::bias_walk_psd})
+      if (!climb_by(factor, figure, likelihood, best))
+        climb_by(1.0 / factor, figure, likelihood, best);
   return best;
 }
 

@@ -122,24 +122,27 @@ class Lister {
         stored.empty() && !is_matlab_ ? fields_of(type) : CompoundFields{};
     const bool is_compound = !fields.numeric.empty();
     if (is_compound) stored = "compound";
-    std::string refusal = meaning_refusal(dataset, class_name);
-    if (refusal.empty() && stored.empty()) refusal = kind_of(type);
-    if (refusal.empty()) refusal = storage_refusal(dataset);
-    if (!refusal.empty()) return skip(place, refusal);
+    if (const std::string refusal = refusal_of(dataset, type, stored, class_name); !refusal.empty())
+      return skip(place, refusal);
     Dataset found{.path = place.path, .address = place.address, .type = stored};
     if (!class_name.empty()) found.type = class_name;
     found.group_length = place.group_length;
     found.is_complex = stored == "complex";
-    std::array<hsize_t, H5S_MAX_RANK> lengths{};
-    const int rank = H5Sget_simple_extent_dims(space, lengths.data(), nullptr);
-    if (rank < 0) return skip(place, "damaged");
-    found.shape.assign(lengths.begin(), lengths.begin() + rank);
+    if (!read_shape(space, found)) return skip(place, "damaged");
     if (is_compound && !keep_fields(fields, place, found)) return;
     const bool is_single =
         std::ranges::all_of(found.shape, [](auto length) { return length == 1; });
     if (is_single && !found.is_complex && !is_compound) found.figure = figure_of(dataset);
     catalogue_.datasets.push_back(std::move(found));
     keep_attributes(dataset, place.path);
+  }
+
+  static bool read_shape(hid_t space, Dataset& into) {
+    std::array<hsize_t, H5S_MAX_RANK> lengths{};
+    const int rank = H5Sget_simple_extent_dims(space, lengths.data(), nullptr);
+    if (rank < 0) return false;
+    into.shape.assign(lengths.begin(), lengths.begin() + rank);
+    return true;
   }
 
   /// Makes columns of the fields of a compound type, and names them; false if it is not a table.
@@ -159,6 +162,16 @@ class Lister {
     if (catalogue_.attributes.size() < most_objects)
       catalogue_.attributes.push_back(std::move(columns));
     return true;
+  }
+
+  /// The reason why a dataset is not read; empty if it is.
+  static std::string refusal_of(hid_t dataset,
+                                hid_t type,
+                                const std::string& stored,
+                                const std::string& class_name) {
+    std::string refusal = meaning_refusal(dataset, class_name);
+    if (refusal.empty() && stored.empty()) refusal = kind_of(type);
+    return refusal.empty() ? storage_refusal(dataset) : refusal;
   }
 
   /// The reason why a dataset is not numeric despite its storage type; empty if it is.
