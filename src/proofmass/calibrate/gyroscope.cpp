@@ -33,6 +33,17 @@ Vector3d earth_variance(const Eigen::Matrix3d& A) {
   return (earth_rate_radps * earth_rate_radps / 3.0) * per_reading.rowwise().squaredNorm();
 }
 
+Error too_few_motions(const GyroscopeData& data) {
+  const auto unused = std::ranges::find_if(
+      data.residuals, [](const MotionResidual& motion) { return !motion.why_unused.empty(); });
+  return {Errc::too_few_samples,
+          fmt::format("gyroscope: {} of {} motions between rests can be used{}; at least {} are "
+                      "needed, and 18 about all axes are sensible",
+                      data.motions.size(), data.residuals.size(),
+                      unused == data.residuals.end() ? "" : " (" + unused->why_unused + ")",
+                      least_motions)};
+}
+
 }  // namespace
 
 const std::array<std::string, gyroscope_parameters>& gyroscope_parameter_names() {
@@ -59,11 +70,7 @@ Result<GyroscopeCalibration> calibrate_gyroscope(View<GyroscopeSession> sessions
                                                  const GyroscopeOptions& options) {
   const Result<GyroscopeData> data = gyroscope_data(sessions, accelerometer, options.table);
   if (!data) return data.error();
-  if (data->motions.size() < least_motions && data->rates.empty())
-    return Error{Errc::too_few_samples,
-                 fmt::format("gyroscope: {} motions between rests, at least {} are needed, and 18 "
-                             "about all axes are sensible",
-                             data->motions.size(), least_motions)};
+  if (data->motions.size() < least_motions && data->rates.empty()) return too_few_motions(*data);
   const Result<Eigen::Matrix3d> start = starting_matrix(*data, options.in_radps);
   if (!start) return start.error();
   GyroscopeFit fit{.rests = {}, .matrix = {}, .latitude_known = options.latitude_rad.has_value()};

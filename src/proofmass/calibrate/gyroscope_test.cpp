@@ -1,5 +1,6 @@
 #include "proofmass/calibrate/gyroscope.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -101,6 +102,38 @@ TEST(GyroscopeCalibration, IsWithinItsUncertaintyAndExplainsTheResidualsByNoise)
   EXPECT_EQ(fit.motions.size(), 19U);
   // White noise of 1e-3 a sample at 100 Hz is 1e-4 rad/√s.
   for (const double n : fit.angle_random_walk) EXPECT_NEAR(n, 1e-4, 1e-5);
+}
+
+// As printed with two decimals: in all rests the bias is rounded by nearly the same amount.
+TEST(GyroscopeCalibration, CountsARoundingThatAllRestsHaveInCommon) {
+  for (std::mt19937_64::result_type seed = 1; seed <= 8; ++seed) {
+    std::mt19937_64 random(seed);
+    const test::GyroscopeTruth truth = test::drawn_gyroscope(random);
+    test::SimulatedRecording recording = test::simulate(truth, {}, random);
+    constexpr double step_radps = 0.01;
+    recording.session.rate_lsb.fill(step_radps);
+    for (auto& axis : recording.session.rate)
+      for (double& rate : axis) rate = step_radps * std::round(rate / step_radps);
+    const GyroscopeCalibration fit = calibrated(recording);
+    for (Eigen::Index k = 0; k < 21; ++k)
+      EXPECT_LT(std::abs(fit.estimate(k) - truth.p(k)), 3.5 * std::sqrt(fit.covariance(k, k)))
+          << seed << ", " << k;
+  }
+}
+
+TEST(GyroscopeCalibration, LeavesOutMotionsAtTheEndOfTheRange) {
+  std::mt19937_64 random(4);
+  const test::GyroscopeTruth truth = test::drawn_gyroscope(random);
+  test::SimulatedRecording recording = test::simulate(truth, {.rests = 40}, random);
+  for (auto& axis : recording.session.rate)
+    for (double& rate : axis) rate = std::clamp(rate, -1.0, 1.0);
+  const GyroscopeCalibration fit = calibrated(recording);
+  const auto saturated = std::ranges::count(fit.motions, "the gyroscope is at the end of its range",
+                                            &MotionResidual::why_unused);
+  EXPECT_GT(saturated, 5);
+  EXPECT_LT(saturated, 30);
+  for (Eigen::Index k = 3; k < 12; ++k)
+    EXPECT_LT(std::abs(fit.estimate(k) - truth.p(k)), 3.5 * std::sqrt(fit.covariance(k, k))) << k;
 }
 
 TEST(GyroscopeCalibration, SearchesTheScaleOfCountsAndTheAssignmentOfAxes) {

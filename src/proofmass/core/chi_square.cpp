@@ -2,6 +2,7 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
@@ -18,6 +19,11 @@ double chi_square_p(double statistic, double degrees_of_freedom) {
   PM_EXPECTS(statistic >= 0.0 && degrees_of_freedom > 0.0);
   const boost::math::chi_squared distribution(degrees_of_freedom);
   return boost::math::cdf(boost::math::complement(distribution, statistic));
+}
+
+double normal_quantile(double p) {
+  PM_EXPECTS(p > 0.0 && p < 1.0);
+  return boost::math::quantile(boost::math::normal(), p);
 }
 
 double student_t_quantile(double p, double degrees_of_freedom) {

@@ -10,6 +10,9 @@ namespace proofmass {
 /// The probability that a chi-square variable with k > 0 degrees of freedom exceeds `statistic`.
 [[nodiscard]] double chi_square_p(double statistic, double degrees_of_freedom);
 
+/// The p-quantile of the standard normal distribution, p in (0, 1).
+[[nodiscard]] double normal_quantile(double p);
+
 /// The p-quantile of Student's t distribution with k degrees of freedom, p in (0, 1), k > 0.
 [[nodiscard]] double student_t_quantile(double p, double degrees_of_freedom);
 

@@ -44,7 +44,7 @@ void follow(const TiltRecord& record, const TiltOptions& options, TiltSolution& 
 
 Result<TiltSolution> estimate_tilt(const TiltRecord& all, const TiltOptions& given) {
   TiltSolution solution;
-  const std::optional<TiltRecord> believable = without_unbelievable(all, solution.notes);
+  const std::optional<TiltRecord> believable = without_unusable(all, solution.notes);
   const TiltRecord& record = believable ? *believable : all;
   TiltOptions options = given;
   if (const Status fits = check_record(record, options, solution); !fits) return fits.error();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <ostream>
 #include <vector>
 
@@ -35,6 +36,10 @@ inline TiltRecord still_record(const Mat<3>& force,
   }
   return record;
 }
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+inline const TiltOptions exact{.gravity_mps2 = {9.80665, 1e-6}, .bias_std_mps2 = 0.0};
+inline const TiltOptions uncalibrated{.gravity_mps2 = {9.80665, 1e-6}};
 
 /// How many 95 % intervals contain the truth.
 struct Coverage {

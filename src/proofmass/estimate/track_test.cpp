@@ -265,9 +265,8 @@ TEST(Track, TakesNoCruiseForARest) {
   EXPECT_LT(found.smoother->peak_m.std, 3.0);
 }
 
-TEST(Track, AGyroscopeSeparatesGravityAndMotion) {
-  // Tilts by 3° during the motion and back: without a gyroscope gravity contributes half a metre
-  // per second squared.
+// A stroke of 0.6 m during which the carriage tilts about y and back, with a gyroscope.
+CarriageRecord tilting_stroke(double tilt_rad) {
   CarriageRecord made = record({.strokes_m = {0.6}, .stroke_s = 4.0, .at_rest_mps2 = {0, 0, g}});
   std::mt19937_64 engine(5);
   std::normal_distribution<double> noise(0.0, 1.0);
@@ -277,9 +276,9 @@ TEST(Track, AGyroscopeSeparatesGravityAndMotion) {
     const bool moving = s > 0.0 && s < 1.0;
     const double bump =
         moving ? std::sin(std::numbers::pi * s) * std::sin(std::numbers::pi * s) : 0.0;
-    const double tilt = 0.05 * bump;  // about y
+    const double tilt = tilt_rad * bump;
     const double rate =
-        moving ? 0.05 * std::numbers::pi / 4.0 * std::sin(2.0 * std::numbers::pi * s) : 0.0;
+        moving ? tilt_rad * std::numbers::pi / 4.0 * std::sin(2.0 * std::numbers::pi * s) : 0.0;
     const double a = made.accel_mps2[k];
     made.sensor.accel_mps2[0][k] = std::cos(tilt) * a - std::sin(tilt) * g + 0.02 * noise(engine);
     made.sensor.accel_mps2[2][k] = std::sin(tilt) * a + std::cos(tilt) * g + 0.02 * noise(engine);
@@ -287,12 +286,29 @@ TEST(Track, AGyroscopeSeparatesGravityAndMotion) {
     made.sensor.rate_radps[1][k] = -0.02 + rate + 1e-3 * noise(engine);
     made.sensor.rate_radps[2][k] = 1e-3 * noise(engine);
   }
-  const TrackSolution found = track(made);
+  return made;
+}
+
+TEST(Track, AGyroscopeSeparatesGravityAndMotion) {
+  // Tilts by 3°: without a gyroscope gravity contributes half a metre per second squared.
+  const TrackSolution found = track(tilting_stroke(0.05));
   EXPECT_TRUE(found.axis_in_world);
   EXPECT_NEAR(std::abs(found.axis[0]), 1.0, 0.01);
   EXPECT_NEAR(found.smoother->displacement_m.value, 0.6, 3.0 * found.smoother->displacement_m.std);
   EXPECT_LT(found.smoother->displacement_m.std, 0.1);
   EXPECT_NEAR(found.smoother->displacement_m.value, 0.6, 0.05);
+}
+
+// Two intervals of 0.7 s; integrated as recorded, they turn gravity by 4°.
+TEST(Track, BridgesARateAtTheEndOfTheGyroscopesRange) {
+  CarriageRecord made = tilting_stroke(0.9);
+  std::vector<double>& rate = made.sensor.rate_radps[1];
+  const double limit = 0.85 * std::ranges::max(rate);
+  for (double& one : rate) one = std::clamp(one, -limit, limit);
+  const TrackSolution found = track(made);
+  EXPECT_TRUE(says(found, "limit of the gyroscope's range"));
+  const Uncertain end = found.smoother->displacement_m;
+  EXPECT_NEAR(end.value, 0.6, 3.0 * end.std);
 }
 
 }  // namespace

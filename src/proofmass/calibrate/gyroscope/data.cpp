@@ -9,6 +9,8 @@
 #include "proofmass/calibrate/multi_position/norm_model.hpp"
 #include "proofmass/core/so3.hpp"
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/signal/range_end.hpp"
+#include "proofmass/signal/rounding.hpp"
 
 namespace proofmass::calibrate {
 namespace {
@@ -89,7 +91,26 @@ Result<SessionNoiseOfRate> noise_of(const GyroscopeSession& session) {
   return out;
 }
 
-GyroscopeRest rest_of(const Pose& pose, const Pose& rate, const MultiPosition& accelerometer) {
+// Variance of a rest's mean due to quantisation, the mean over all rests. A gyroscope has nearly
+// the same reading in all of them, so that their scatter does not show it: the values of each do.
+Vector3d rounding_of(const GyroscopeSession& session) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Dwell& rest : session.rests)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::vector<double>& rate = session.rate[axis];
+      std::vector<double> values;
+      for (std::size_t n = rest.first; n <= rest.last; ++n)
+        if (std::isfinite(rate[n])) values.push_back(rate[n]);
+      sum(static_cast<Index>(axis)) +=
+          signal::rounding_variance(std::move(values), session.rate_lsb[axis]);
+    }
+  return sum / static_cast<double>(session.rests.size());
+}
+
+GyroscopeRest rest_of(const Pose& pose,
+                      const Pose& rate,
+                      const Vector3d& rounding,
+                      const MultiPosition& accelerometer) {
   const Parameters p(accelerometer.estimate.data());
   GyroscopeRest out;
   out.force = force_of(p, pose.mean);
@@ -98,7 +119,8 @@ GyroscopeRest rest_of(const Pose& pose, const Pose& rate, const MultiPosition& a
   out.tilt_covariance = tilt * pose.mean_covariance * tilt.transpose();
   out.tilt_by_accel = tilt_by_parameters(accelerometer, pose.mean);
   out.mean = rate.mean;
-  out.variance = rate.mean_covariance.diagonal();
+  out.rounding = rounding;
+  out.variance = rate.mean_covariance.diagonal() - rate.rounding_variance + rounding;
   return out;
 }
 
@@ -146,6 +168,7 @@ void add_motions(const GyroscopeSession& session,
                  GyroscopeData& data) {
   const double step_s = usual_step_s(session.time_s);
   const std::size_t base = data.rests.size() - session.rests.size();
+  const std::vector<bool> at_its_end = signal::saturated_rows(session.rate);
   for (std::size_t k = 0; k + 1 < session.rests.size(); ++k) {
     MotionResidual& listed = data.residuals.emplace_back();
     listed.session = index;
@@ -154,6 +177,10 @@ void add_motions(const GyroscopeSession& session,
     listed.end_s = session.time_s[session.rests[k + 1].first];
     GyroscopeMotion motion{.samples = {}, .from = base + k, .to = base + k + 1, .noise_axes = {}};
     listed.why_unused = take_samples(session, accelerometer, k, step_s, motion.samples);
+    const auto from = at_its_end.begin() + static_cast<std::ptrdiff_t>(session.rests[k].last);
+    const auto to = at_its_end.begin() + static_cast<std::ptrdiff_t>(session.rests[k + 1].first);
+    if (std::find(from, to, true) != to)
+      listed.why_unused = "the gyroscope is at the end of its range";
     listed.used = listed.why_unused.empty();
     if (!listed.used) continue;
     subtract_rests(data.rests[motion.from], data.rests[motion.to], motion.samples);
@@ -205,9 +232,10 @@ void add_rests(const GyroscopeSession& session,
                const MultiPosition& accelerometer,
                const SessionNoiseOfRate& noise,
                GyroscopeData& data) {
+  const Vector3d rounding = rounding_of(session);
   for (std::size_t k = 0; k < session.rests.size(); ++k) {
-    GyroscopeRest& rest =
-        data.rests.emplace_back(rest_of(session.poses[k], noise.means.poses[k], accelerometer));
+    GyroscopeRest& rest = data.rests.emplace_back(
+        rest_of(session.poses[k], noise.means.poses[k], rounding, accelerometer));
     rest.session = index;
     rest.span_s = {session.time_s[session.rests[k].first], session.time_s[session.rests[k].last]};
   }

@@ -22,6 +22,7 @@ struct GyroscopeRest {
   /// That rotation vector per parameter of the accelerometer's calibration.
   Eigen::Matrix<double, 3, 9> tilt_by_accel;
   Eigen::Vector3d mean, variance;  ///< of the gyroscope
+  Eigen::Vector3d rounding;        ///< the part of `variance` due to quantisation
   std::size_t session = 0;
   Span span_s{};  ///< in the session's time
 };

@@ -55,7 +55,22 @@ MatrixXd walk_between(const std::vector<GyroscopeRest>& rests) {
 struct AxisRegression {
   MatrixXd X;
   VectorXd y, variance;
+  MatrixXd common_rounding;
 };
+
+// Rests with nearly equal readings have nearly equal errors of rounding, which change with the
+// force where G moves the reading over a step: as if the bias and each element of G were wrong by
+// the error of a rest (per g).
+MatrixXd common_rounding(const std::vector<GyroscopeRest>& rests, Index axis) {
+  const auto n = static_cast<Index>(rests.size());
+  MatrixXd rows(n, 4);
+  for (Index k = 0; k < n; ++k) {
+    const GyroscopeRest& rest = rests[static_cast<std::size_t>(k)];
+    rows.row(k) << 1.0, rest.up.transpose();
+    rows.row(k) *= std::sqrt(rest.rounding(axis));
+  }
+  return rows * rows.transpose();
+}
 
 // Logarithm of the restricted likelihood, up to a constant.
 double restricted_likelihood(const AxisRegression& axis, const MatrixXd& V) {
@@ -67,7 +82,7 @@ double restricted_likelihood(const AxisRegression& axis, const MatrixXd& V) {
 
 // The noise of the means and the random walk that they show.
 MatrixXd covariance_of(const AxisRegression& axis, const MatrixXd& walk) {
-  const MatrixXd noise = axis.variance.asDiagonal();
+  const MatrixXd noise = axis.common_rounding + MatrixXd(axis.variance.asDiagonal());
   const double usual = walk.diagonal().mean();
   if (!(usual > 0.0) || axis.X.rows() < axis.X.cols() + 3) return noise;
   // From a walk that is hardly visible to one that is ten thousand times the noise's variance.
@@ -94,7 +109,8 @@ AxisRegression equations_of(const GyroscopeData& data,
                             Index axis,
                             Index count) {
   const auto n = static_cast<Index>(data.rests.size());
-  AxisRegression out{MatrixXd(n, count), VectorXd(n), VectorXd(n)};
+  AxisRegression out{MatrixXd(n, count), VectorXd(n), VectorXd(n),
+                     common_rounding(data.rests, axis)};
   for (Index k = 0; k < n; ++k) {
     const GyroscopeRest& rest = data.rests[static_cast<std::size_t>(k)];
     Vector4d row;

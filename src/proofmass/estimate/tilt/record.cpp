@@ -7,6 +7,7 @@
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/plane.hpp"
+#include "proofmass/signal/range_end.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -73,20 +74,37 @@ void drop_beyond(double most, std::array<std::vector<double>, 3>& axes) {
       if (std::abs(value) > most) value = no_value;
 }
 
+void drop_rows(const std::vector<bool>& rows, std::array<std::vector<double>, 3>& axes) {
+  for (std::vector<double>& axis : axes)
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      if (rows[k]) axis[k] = no_value;
+}
+
 }  // namespace
 
-std::optional<TiltRecord> without_unbelievable(const TiltRecord& record, std::vector<Note>& notes) {
+std::optional<TiltRecord> without_unusable(const TiltRecord& record, std::vector<Note>& notes) {
   const std::size_t forces = count_beyond(beyond_belief_mps2, record.accel_mps2);
   const std::size_t count = forces + count_beyond(beyond_belief_radps, record.rate_radps);
   // A majority means a wrong unit.
   const bool most = 2 * forces > record.accel_mps2[0].size();
-  if (count == 0 || most) return std::nullopt;
+  const std::vector<bool> saturated =
+      has_rates(record) ? signal::saturated_rows(record.rate_radps) : std::vector<bool>{};
+  const auto rows = std::ranges::count(saturated, true);
+  if ((count == 0 || most) && rows == 0) return std::nullopt;
   TiltRecord out = record;
-  drop_beyond(beyond_belief_mps2, out.accel_mps2);
-  drop_beyond(beyond_belief_radps, out.rate_radps);
-  notes.push_back({Severity::warning, std::to_string(count) +
-                                          (count == 1 ? " reading is" : " readings are") +
-                                          " beyond 1000 g or 10000 rad/s and not used"});
+  if (count > 0 && !most) {
+    drop_beyond(beyond_belief_mps2, out.accel_mps2);
+    drop_beyond(beyond_belief_radps, out.rate_radps);
+    notes.push_back({Severity::warning, std::to_string(count) +
+                                            (count == 1 ? " reading is" : " readings are") +
+                                            " beyond 1000 g or 10000 rad/s and not used"});
+  }
+  if (rows > 0) {
+    drop_rows(saturated, out.rate_radps);
+    notes.push_back({Severity::warning, std::to_string(rows) +
+                                            " rows have an angular rate at the limit of the "
+                                            "gyroscope's range, which is not used"});
+  }
   return out;
 }
 

@@ -19,11 +19,11 @@ namespace proofmass::estimate {
 /// Three axes at one sample; NaN for a missing or non-finite axis.
 [[nodiscard]] Mat<3> vector_at(const std::array<std::vector<double>, 3>& axes, std::size_t k);
 
-/// A copy of the record in which measurements outside any sensor's range are NaN, and a note with
-/// their number. nullopt if there are none, or if they are the majority: then the unit is wrong,
-/// which check_record() reports.
-[[nodiscard]] std::optional<TiltRecord> without_unbelievable(const TiltRecord& record,
-                                                             std::vector<Note>& notes);
+/// A copy of the record in which measurements outside any sensor's range, and rates at the end of
+/// the gyroscope's, are NaN, and notes with their numbers. nullopt if there are none. If most
+/// forces are outside, the unit is wrong, which check_record() reports.
+[[nodiscard]] std::optional<TiltRecord> without_unusable(const TiltRecord& record,
+                                                         std::vector<Note>& notes);
 
 /// Sets samples, axes and unusable, and notes the latter. Errors: as for estimate_tilt;
 /// not_observable if the median force cannot be gravity's.

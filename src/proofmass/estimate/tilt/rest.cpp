@@ -3,40 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "proofmass/core/chi_square.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/sensor/noise_conversions.hpp"
 #include "proofmass/signal/channel_audit.hpp"
+#include "proofmass/signal/rounding.hpp"
 
 namespace proofmass::estimate {
 namespace {
 
 constexpr std::size_t batches = 40;
-
-// Dither: causes of transitions between the codes of a converter.
-struct Dither {
-  double noise = 0.0;  ///< variance of its Gaussian part, steps²
-  double sine = 0.0;   ///< amplitude of an additional sine, in steps
-};
-
-// From variance and fourth moment, corrected for quantisation (Sheppard): a sine of amplitude A has
-// the fourth cumulant −3 A⁴/8, noise none. A sine counts if it is significant.
-Dither dither_of(const std::vector<double>& values, double step) {
-  const Moments all = moments(values);
-  const double raw = square(all.std() / step), variance = std::max(0.0, raw - 1.0 / 12.0);
-  double fourth = 0.0;
-  for (const double value : values) fourth += square(square((value - all.mean) / step));
-  const auto count = static_cast<double>(all.count);
-  const double cumulant = fourth / count - raw / 2.0 + 7.0 / 240.0 - 3.0 * square(variance);
-  Dither out{.noise = variance};
-  if (cumulant > -2.0 * std::sqrt(24.0 / count) * square(variance)) return out;
-  out.sine = std::pow(-8.0 / 3.0 * cumulant, 0.25);
-  out.noise = std::max(0.0, variance - square(out.sine) / 2.0);
-  return out;
-}
 
 // Ratio of the variance of a mean to that of independent values: 1 + 2 Σ ρ_k over the positive
 // pairs of lags, if the first is significant.
@@ -66,26 +44,6 @@ double span_s(const TiltRecord& record, const signal::Rest& samples) {
 
 }  // namespace
 
-double rounding_variance(std::vector<double> values, double step) {
-  if (!(step > 0.0) || values.empty()) return 0.0;
-  const double hidden = step * step / 12.0;
-  const Dither dither = dither_of(values, step);
-  std::ranges::sort(values);
-  // If nearly all values have two codes, noise far below the step may cross their border.
-  constexpr double nearly_all = 0.998;
-  std::size_t most = 0;
-  for (std::size_t first = 0, end = 0; first < values.size(); ++first) {
-    while (end < values.size() && values[end] < values[first] + 1.5 * step) ++end;
-    most = std::max(most, end - first);
-  }
-  const bool two_codes =
-      static_cast<double>(most) >= nearly_all * static_cast<double>(values.size());
-  if (two_codes || dither.noise + dither.sine <= 0.0) return hidden;
-  constexpr double pi = std::numbers::pi;
-  const double left = std::min(1.0, 1.0 / (pi * pi * dither.sine));
-  return std::min(hidden, square(step / pi) / 2.0 * left * std::exp(-4.0 * pi * pi * dither.noise));
-}
-
 StretchMean stretch_mean(View<double> values, double step) {
   std::vector<double> finite;
   finite.reserve(values.size());
@@ -106,7 +64,7 @@ StretchMean stretch_mean(View<double> values, double step) {
     out.variance = square(wider * moments(means).std()) / count * correlated(means);
   }
   out.scatter = square(all.std());
-  out.rounding = rounding_variance(std::move(finite), step);
+  out.rounding = signal::rounding_variance(std::move(finite), step);
   return out;
 }
 

@@ -27,17 +27,6 @@ struct StretchMean {
 /// and 3.3.
 [[nodiscard]] StretchMean stretch_mean(View<double> values, double step);
 
-/// Variance of the error of a mean of quantised measurements:
-///
-/// - step²/12 without noise;
-/// - with Gaussian noise σ, at most (step/π) e^(−2π²(σ/step)²), sinusoidal in the mean;
-/// - with an additional sine of amplitude A, |J₀(2πA/step)| ≤ (1/π) √(step/A) of that. Both act as
-///   dither.
-/// - step²/12 if all but 2 in 1000 measurements have one of two codes.
-///
-/// Source: B. Widrow, I. Kollár, Quantization Noise (2008), chapter 5 and appendix G.
-[[nodiscard]] double rounding_variance(std::vector<double> values, double step);
-
 /// Quantisation step of each axis, 0 if it appears continuous: as stated by the record or else
 /// estimated from its values. An axis with a constant value is assigned the largest step of the
 /// others; nullopt if there is none.

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 #include <utility>
 
 #include "proofmass/estimate/attitude.hpp"
 #include "proofmass/estimate/track/findings.hpp"
 #include "proofmass/estimate/track/motion.hpp"
 #include "proofmass/signal/channel_audit.hpp"
+#include "proofmass/signal/range_end.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -67,27 +70,41 @@ void fill(const Attitude& attitude,
   }
 }
 
-// Measurements that no sensor gives, such as 3e34, are missing.
-InertialSeries plausible(const TrackSensor& sensor) {
+struct UsableSeries {
+  InertialSeries series;
+  std::size_t saturated = 0;  ///< rows
+};
+
+// Measurements that no sensor gives, such as 3e34, and rates at the end of the gyroscope's range
+// are missing.
+UsableSeries usable_series(const TrackSensor& sensor) {
   InertialSeries series{sensor.time_s, sensor.rate_radps, sensor.accel_mps2};
   for (auto* sensors : {&series.rate_radps, &series.accel_mps2})
     for (auto& axis : *sensors)
       for (double& value : axis) value = signal::plausible_or_nan(value);
-  return series;
+  const std::vector<bool> saturated = signal::saturated_rows(series.rate_radps);
+  for (auto& axis : series.rate_radps)
+    for (std::size_t k = 0; k < axis.size(); ++k)
+      if (saturated[k]) axis[k] = std::numeric_limits<double>::quiet_NaN();
+  const auto count = std::ranges::count(saturated, true);
+  return {std::move(series), static_cast<std::size_t>(count)};
 }
 
 // Outside of a stretch the attitude is NaN.
-Result<Attitude> undivided_attitude(const InertialSeries& series,
+Result<Attitude> undivided_attitude(const UsableSeries& usable,
                                     const std::vector<signal::Rest>& rests,
                                     const AttitudeOptions& how) {
-  auto found = estimate_attitude(series, rests, how);
+  auto found = estimate_attitude(usable.series, rests, how);
   if (!found) return found.error();
   const auto& stretches = found->stretches;
   if (stretches.size() != 1 || stretches.front().first != 0 ||
-      stretches.front().last + 1 != series.time_s.size())
+      stretches.front().last + 1 != usable.series.time_s.size())
     return Error{Errc::not_observable,
-                 "a gap of more than a second parts the recording, and with it the attitude: "
-                 "analyse one part, or omit the gyroscope",
+                 std::string(usable.saturated > 0 ? "a gap, or a rotation beyond the gyroscope's "
+                                                    "range, of more than a second"
+                                                  : "a gap of more than a second") +
+                     " parts the recording, and with it the attitude: analyse one part, or omit "
+                     "the gyroscope",
                  {Advice{"from"}, Advice{"to"}, Advice{"no-gyro"}}};
   return found;
 }
@@ -97,15 +114,15 @@ Result<Attitude> undivided_attitude(const InertialSeries& series,
 Result<TrackSignal> world_signal(const TrackSensor& sensor,
                                  const TrackSignal& signal,
                                  const TrackOptions& options) {
-  const InertialSeries series = plausible(sensor);
+  const UsableSeries usable = usable_series(sensor);
   AttitudeOptions how;
   how.gravity_mps2 = options.gravity_mps2;
   how.progress = options.progress;
   const auto found =
-      undivided_attitude(series, {signal.stops.rests.front(), signal.stops.rests.back()}, how);
+      undivided_attitude(usable, {signal.stops.rests.front(), signal.stops.rests.back()}, how);
   if (!found) return found.error();
   TrackSignal world = signal;
-  const auto accel = gravity_free_acceleration(series, *found);
+  const auto accel = gravity_free_acceleration(usable.series, *found);
   world.accel_mps2.assign(accel.begin(), accel.end());
   world.axes = {0, 1, 2};
   world.reference_mps2.assign(3, 0.0);
@@ -119,16 +136,16 @@ Result<bool> track_aided(const TrackSensor& sensor,
                          const TrackReadings& readings,
                          const TrackOptions& options,
                          TrackSolution& solution) {
-  const InertialSeries series = plausible(sensor);
+  const UsableSeries usable = usable_series(sensor);
   AttitudeOptions how;
   how.gravity_mps2 = options.gravity_mps2;
   how.progress = options.progress;
-  auto found = undivided_attitude(series, signal.stops.rests, how);
+  auto found = undivided_attitude(usable, signal.stops.rests, how);
   if (!found) return found.error();
   const FoundAxis axis = axis_of(*found, sensor.time_s, options);
   if (!readings.fixes.empty()) {
     how.positions = readings_along(axis.direction, readings);
-    found = estimate_attitude(series, signal.stops.rests, how);
+    found = estimate_attitude(usable.series, signal.stops.rests, how);
     if (!found) return found.error();
   }
   const Attitude& attitude = *found;
@@ -136,8 +153,13 @@ Result<bool> track_aided(const TrackSensor& sensor,
   solution.axis_in_world = true;
   solution.travel_share = axis.share;
   solution.scale_std = scale_std(signal, options, solution);
-  fill(attitude, gravity_free_acceleration(series, attitude), solution);
+  fill(attitude, gravity_free_acceleration(usable.series, attitude), solution);
   solution.notes.insert(solution.notes.end(), attitude.notes.begin(), attitude.notes.end());
+  if (usable.saturated > 0)
+    solution.notes.push_back(
+        {Severity::warning, std::to_string(usable.saturated) +
+                                " rows have an angular rate at the limit of the gyroscope's range, "
+                                "and are bridged: record with a wider range, or move more slowly"});
   std::size_t unused = 0;
   std::erase_if(solution.rests, [&](const signal::Rest& rest) {
     const bool drop =

@@ -7,6 +7,7 @@
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/fit.hpp"
+#include "proofmass/signal/range_end.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -211,20 +212,6 @@ Result<WheelPlane> plane_from(const WheelSensor& sensor,
   return plane_about(*axis);
 }
 
-/// Measurements at a channel's largest value for three rows or more: the end of the gyroscope's
-/// range. A constant channel is all of that, and contains no information either.
-std::vector<bool> saturated(const std::vector<double>& rate_radps) {
-  double most = 0.0;
-  for (const double rate : rate_radps)
-    if (std::isfinite(rate)) most = std::max(most, std::abs(rate));
-  std::vector<bool> out(rate_radps.size(), false);
-  for (std::size_t row = 2; row < rate_radps.size(); ++row)
-    if (std::abs(rate_radps[row]) == most && rate_radps[row - 1] == rate_radps[row] &&
-        rate_radps[row - 2] == rate_radps[row])
-      out[row] = out[row - 1] = out[row - 2] = true;
-  return out;
-}
-
 /// Regression on the speed, of measurements within `most_radps` of another.
 RateLeak regression(const std::vector<double>& rate_radps,
                     const std::vector<double>& speed_radps,
@@ -295,7 +282,8 @@ void add_speeds(const WheelSensor& sensor,
     rates->assign(size, std::numeric_limits<double>::quiet_NaN());
   std::array<std::vector<bool>, 3> at_its_end;
   for (std::size_t axis = 0; axis < 3; ++axis)
-    if (std::abs(plane.axis[axis]) > 0.05) at_its_end[axis] = saturated(sensor.rate_radps[axis]);
+    if (std::abs(plane.axis[axis]) > 0.05)
+      at_its_end[axis] = signal::at_range_end(sensor.rate_radps[axis]);
   std::vector<double> seconds;  // differences
   for (std::size_t row = 0; row < size; ++row) {
     const Axis rate{sensor.rate_radps[0][row], sensor.rate_radps[1][row],
