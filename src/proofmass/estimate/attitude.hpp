@@ -25,11 +25,13 @@ struct InertialSeries {
   std::array<std::vector<double>, 3> accel_mps2;  ///< specific force: +g upward at rest
 };
 
-/// A measured position: at a sample, along a world direction, relative to the start of the stretch.
+/// A measured position: `after_s` from a sample, along a world direction, relative to the start of
+/// the stretch.
 struct PositionReading {
   std::size_t sample = 0;
   Mat<3> direction = Mat<3>::UnitZ();  ///< unit vector
   double position_m = 0.0, variance_m2 = 0.0;
+  double after_s = 0.0;
 };
 
 /// Densities are two-sided. Omitted values are estimated from the rests, or without rests take the

@@ -6,6 +6,7 @@
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/track/aided.hpp"
 #include "proofmass/estimate/track/findings.hpp"
+#include "proofmass/estimate/track/fixes.hpp"
 #include "proofmass/estimate/track/hypotheses.hpp"
 #include "proofmass/estimate/track/pva.hpp"
 #include "proofmass/estimate/track/settle.hpp"
@@ -111,7 +112,7 @@ std::vector<double> covariance_at(const AxisRun& run, const std::vector<std::siz
   kept = epochs;
   kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
   const PositionCovariance cov =
-      smoothed_positions(InertialAxis{run.made.epochs, run.noise}, run.start, kept);
+      smoothed_positions(InertialAxis{run.made.epochs, run.noise}, run.smoother_start, kept);
   const auto place = [&](std::size_t epoch) {
     return static_cast<std::size_t>(std::lower_bound(kept.begin(), kept.end(), epoch) -
                                     kept.begin());
@@ -160,17 +161,23 @@ bool rests_are_in_doubt(const TrackOptions& options) {
 struct Settled {
   AlongAxis along;
   std::size_t belied = 0;  // short quiet intervals that are no rests
+  FixReview fixes;
   std::vector<TrackAlternative> alternatives;
 };
 
-// Decides which quiet intervals are rests, removes the others from the signal.
-Result<Settled> settle(TrackSignal& signal, const TrackOptions& options) {
+// Decides which quiet intervals are rests, removes the others from the signal, and corrects the
+// fixes.
+Result<Settled> settle(TrackSignal& signal, TrackOptions& options) {
   auto solved = solve(signal, options);
   if (!solved) return solved.error();
   Settled settled;
   if (!options.only_end_rests)
     settled.belied = drop_belied_rests(signal, solved->accel_mps2, options);
   if (settled.belied > 0) solved = solve(signal, options);
+  if (!solved) return solved.error();
+  AlongAxis found = std::move(solved).value();
+  settled.fixes = review_fixes(signal, options, rests_are_in_doubt(options), found);
+  solved = std::move(found);
   if (rests_are_in_doubt(options)) settled.alternatives = settle_stops(signal, options, solved);
   settled.along = std::move(solved).value();
   return settled;
@@ -186,13 +193,14 @@ void add_alternatives(std::vector<TrackAlternative> alternatives, TrackSolution&
 
 Result<TrackSolution> track_without_gyro(const TrackSensor& sensor,
                                          TrackSignal signal,
-                                         const TrackOptions& options) {
+                                         TrackOptions options) {
   auto result = settle(signal, options);
   if (!result) return result.error();
   auto settled = std::move(result).value();
   AlongAxis& found = settled.along;
   TrackSolution solution = described(signal, options);
   solution.false_rests = settled.belied;
+  solution.fix_review = std::move(settled.fixes);
   solution.axis = found.axis.direction;
   solution.travel_share = found.axis.share;
   solution.scale_std = scale_std(signal, options, solution);
@@ -241,7 +249,7 @@ std::vector<double> covariance_by_velocity(const TrackSeries& series,
 // is acceleration, not tilt.
 Result<Settled> settle_with_gyro(const TrackSensor& sensor,
                                  TrackSignal& signal,
-                                 const TrackOptions& options) {
+                                 TrackOptions& options) {
   auto made = world_signal(sensor, signal, options);
   if (!made) return made.error();
   TrackSignal world = std::move(made).value();
@@ -249,20 +257,23 @@ Result<Settled> settle_with_gyro(const TrackSensor& sensor,
   level.take_as_acceleration = true;
   auto settled = settle(world, level);
   signal.stops = world.stops;
+  options.fixes = std::move(level.fixes);
   return settled;
 }
 
 Result<TrackSolution> track_with_gyro(const TrackSensor& sensor,
                                       TrackSignal signal,
-                                      const TrackOptions& options) {
+                                      TrackOptions options) {
   Settled settled;
-  if (rests_are_in_doubt(options) && signal.stops.rests.size() > 2) {
+  const bool has_fixes = !options.fixes.empty() && !signal.stops.rests.empty();
+  if (has_fixes || (rests_are_in_doubt(options) && signal.stops.rests.size() > 2)) {
     auto found = settle_with_gyro(sensor, signal, options);
     if (!found) return found.error();
     settled = std::move(found).value();
   }
   TrackSolution solution = described(signal, options);
   solution.false_rests = settled.belied;
+  solution.fix_review = std::move(settled.fixes);
   const TrackReadings readings = readings_of(signal, options);
   if (const auto done = track_aided(sensor, signal, readings, options, solution); !done)
     return done.error();

@@ -55,6 +55,14 @@ struct PositionFix {
   double std_m = 0.0;
 };
 
+/// What the fixes contradict.
+struct FixReview {
+  std::size_t false_rests = 0;       ///< quiet stretches that are no rests
+  std::vector<PositionFix> wrong{};  ///< not used
+  std::optional<Uncertain>
+      delay_s{};  ///< by which the times of the fixes were late, if it is clear
+};
+
 struct TimeSpan {
   double start_s = 0.0, end_s = 0.0;
 };
@@ -193,6 +201,7 @@ struct TrackSolution {
   /// The whole recording is as quiet as rest: only its ends are used as rests.
   bool no_motion_shown = false;
   std::size_t false_rests = 0;  ///< short rests contradicted by the motion between the long ones
+  FixReview fix_review{};
   bool suspected_jerk = false;  ///< true: no method has a result
   std::optional<TrackMethod> double_integration, kalman, smoother;
   std::vector<Stroke> strokes;

@@ -232,8 +232,11 @@ void AttitudeModel::add_rest(std::size_t k, Readings<states, channels>& out) con
 void AttitudeModel::add_position(std::size_t k, Readings<states, channels>& out) const {
   if (reading_of_[k] == 0) return;
   const PositionReading& reading = options_.positions[reading_of_[k] - 1];
-  const double off = reading.position_m - reading.direction.dot(nominal[k].p);
-  add_row(out, off, reading.variance_m2).segment<3>(inertial::position) = reading.direction;
+  const Mat<3> there = nominal[k].p + reading.after_s * nominal[k].v;
+  InertialError& h =
+      add_row(out, reading.position_m - reading.direction.dot(there), reading.variance_m2);
+  h.segment<3>(inertial::position) = reading.direction;
+  h.segment<3>(inertial::velocity) = reading.after_s * reading.direction;
 }
 
 void AttitudeModel::measure(const InertialError& x,

@@ -61,21 +61,23 @@ Transition<3, 3> InertialAxis::transition(const Mat<3>& x, std::size_t k) const 
 void InertialAxis::measure(const Mat<3>& x, std::size_t k, Readings<3, 3>& out) const {
   const InertialEpoch& epoch = epochs[k];
   out.count = 0;
-  const auto read = [&](int state, double value, double variance) {
-    out.rows[static_cast<std::size_t>(out.count++)] = {value, x(state), variance,
-                                                       Mat<3>::Unit(state)};
+  const auto read = [&](const Mat<3>& h, double value, double variance) {
+    out.rows[static_cast<std::size_t>(out.count++)] = {value, h.dot(x), variance, h};
   };
   if (epoch.velocity_std_mps > 0.0)
-    read(inertial_axis::velocity_mps, 0.0, epoch.velocity_std_mps * epoch.velocity_std_mps);
+    read(Mat<3>::Unit(inertial_axis::velocity_mps), 0.0,
+         epoch.velocity_std_mps * epoch.velocity_std_mps);
   if (!std::isnan(epoch.level_mps2))
-    read(inertial_axis::bias_mps2, epoch.level_mps2, epoch.level_variance);
-  if (!std::isnan(epoch.position_m))
-    read(inertial_axis::position_m, epoch.position_m, epoch.position_variance);
+    read(Mat<3>::Unit(inertial_axis::bias_mps2), epoch.level_mps2, epoch.level_variance);
+  if (!std::isnan(epoch.position_m)) {
+    const double t = epoch.position_after_s;
+    read({1.0, t, epoch.resting ? 0.0 : -0.5 * t * t}, epoch.position_m, epoch.position_variance);
+  }
 }
 
 FilterState<3> inertial_start(const InertialStart& start) {
   FilterState<3> state;
-  state.x.mean = Mat<3>(0.0, 0.0, start.bias_mps2);
+  state.x.mean = Mat<3>(0.0, start.speed_mps, start.bias_mps2);
   state.x.cov.diagonal() << 0.0, start.speed_std_mps * start.speed_std_mps,
       start.bias_std_mps2 * start.bias_std_mps2;
   return state;

@@ -37,8 +37,10 @@ struct InertialEpoch {
   double velocity_std_mps = std::numeric_limits<double>::quiet_NaN();  ///< of the measurement v = 0
   double level_mps2 = std::numeric_limits<double>::quiet_NaN();  ///< a at rest, mean since before
   double level_variance = 0.0;
+  /// Measured position at position_after_s after the epoch, extrapolated to constant speed: less
+  /// ½ a t² unless `resting`.
   double position_m = std::numeric_limits<double>::quiet_NaN();
-  double position_variance = 0.0;
+  double position_variance = 0.0, position_after_s = 0.0;
 };
 
 struct InertialNoise {
@@ -65,10 +67,10 @@ struct InertialAxis {
   void reopen(Gaussian<3>&, std::size_t) const {}
 };
 
-/// Prior at the first epoch: p = 0, v within `speed_std_mps`, b within `bias_std_mps2` of
-/// `bias_mps2`.
+/// Prior at the first epoch: p = 0, v within `speed_std_mps` of `speed_mps`, b within
+/// `bias_std_mps2` of `bias_mps2`.
 struct InertialStart {
-  double speed_std_mps = 0.0;
+  double speed_mps = 0.0, speed_std_mps = 0.0;
   double bias_mps2 = 0.0, bias_std_mps2 = 10.0;
 };
 [[nodiscard]] FilterState<3> inertial_start(const InertialStart& start);

@@ -48,7 +48,7 @@ struct PvaSample {
   bool jumps = false;    ///< c jumps during the step
   double velocity_std_mps = std::numeric_limits<double>::quiet_NaN();  ///< of the measurement v = 0
   double position_m = std::numeric_limits<double>::quiet_NaN();
-  double position_variance = 0.0;
+  double position_variance = 0.0, position_after_s = 0.0;  ///< the position then
 };
 
 struct PvaNoise {
@@ -123,8 +123,12 @@ class PvaAxis {
     const PvaSample& sample = samples_[k];
     if (sample.velocity_std_mps > 0.0)
       add(0.0, sample.velocity_std_mps * sample.velocity_std_mps, State::Unit(pva::velocity_mps));
-    if (!std::isnan(sample.position_m))
-      add(sample.position_m, sample.position_variance, State::Unit(pva::position_m));
+    if (std::isnan(sample.position_m)) return;
+    State h = State::Unit(pva::position_m);
+    const double t = sample.position_after_s;
+    h(pva::velocity_mps) = t;
+    h(pva::accel_mps2) = 0.5 * t * t;
+    add(sample.position_m, sample.position_variance, h);
   }
 
   /// Channel of the i-th measurement of sample k.

@@ -42,7 +42,8 @@ FoundAxis axis_of(const Attitude& attitude, View<double> time_s, const TrackOpti
 std::vector<PositionReading> readings_along(const Direction& axis, const TrackReadings& readings) {
   std::vector<PositionReading> out;
   for (const auto& fix : readings.fixes)
-    out.push_back({fix.sample, Mat<3>(axis[0], axis[1], axis[2]), fix.position_m, fix.variance_m2});
+    out.push_back({fix.sample, Mat<3>(axis[0], axis[1], axis[2]), fix.position_m, fix.variance_m2,
+                   fix.after_s});
   return out;
 }
 

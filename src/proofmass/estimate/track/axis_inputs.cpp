@@ -159,6 +159,7 @@ std::vector<PvaSample> samples_of(const PvaTask& task, View<double> accel) {
     const double sum =
         (before > 0.0 ? before * at.position_m : 0.0) + fix.position_m / fix.variance_m2;
     at.position_m = sum / weight;
+    at.position_after_s = (before * at.position_after_s + fix.after_s / fix.variance_m2) / weight;
     at.position_variance = 1.0 / weight;
   }
   for (const signal::Rest& rest : task.readings.rests) {
@@ -167,7 +168,8 @@ std::vector<PvaSample> samples_of(const PvaTask& task, View<double> accel) {
     for (std::size_t k = rest.first + 1; k <= rest.last; ++k)
       samples[k] = {.resting = true,
                     .position_m = samples[k].position_m,
-                    .position_variance = samples[k].position_variance};
+                    .position_variance = samples[k].position_variance,
+                    .position_after_s = samples[k].position_after_s};
     if (rest.last + 1 < samples.size()) samples[rest.last + 1].jumps = true;
   }
   return samples;

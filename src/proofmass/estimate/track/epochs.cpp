@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "proofmass/core/statistics.hpp"
+
 namespace proofmass::estimate {
 namespace {
 
@@ -176,11 +178,21 @@ class EpochBuilder {
       reads = true;
     }
     if (fix_ < readings_.fixes.size() && readings_.fixes[fix_].sample <= sample) {
-      epoch.position_m = readings_.fixes[fix_].position_m;
-      epoch.position_variance = readings_.fixes[fix_++].variance_m2;
+      read_position(sample, readings_.fixes[fix_++], epoch);
       reads = true;
     }
     if (reads) knot();
+  }
+
+  void read_position(std::size_t sample, const TrackReadings::Fix& fix, InertialEpoch& epoch) {
+    const double t = epoch.position_after_s =
+        fix.after_s + signal_.time_s[fix.sample] - signal_.time_s[sample];
+    const double moved_m = epoch.resting ? 0.0 : 0.5 * t * t * last_accel_.value_or(0.0);
+    epoch.position_m = fix.position_m - moved_m;
+    epoch.position_variance = fix.variance_m2;
+    // Farther from a sample than usual: in a gap.
+    if (std::abs(t) > signal_.longest_step_s)
+      epoch.position_variance += square(0.5 * t * t * signal_.missing_std_mps2);
   }
 
   void rest_over(const signal::Rest& rest) {

@@ -35,6 +35,7 @@ struct TrackReadings {
   struct Fix {
     std::size_t sample;
     double position_m, variance_m2;
+    double after_s = 0.0;  ///< time since that sample
   };
   std::vector<Fix> fixes;          ///< ascending
   std::vector<std::size_t> turns;  ///< ascending; the velocity is 0

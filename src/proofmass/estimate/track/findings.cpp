@@ -19,6 +19,25 @@ namespace {
 
 constexpr double degree = 0.017453292519943295;
 
+void note_fixes(const FixReview& fixes, std::vector<Note>& notes) {
+  if (fixes.false_rests > 0)
+    notes.push_back(
+        {Severity::info,
+         text("%zu quiet intervals are not rests: the fixes contradict them", fixes.false_rests)});
+  if (fixes.delay_s)
+    notes.push_back(
+        {Severity::warning,
+         text("the fixes are %s by %.3g ± %.2g s relative to the accelerations, and their times "
+              "are corrected by that: check that both have one clock",
+              fixes.delay_s->value > 0.0 ? "late" : "early", std::abs(fixes.delay_s->value),
+              fixes.delay_s->std)});
+  for (const PositionFix& fix : fixes.wrong)
+    notes.push_back({Severity::warning,
+                     text("the fix of %.4g m at %.4g s contradicts the accelerations and the other "
+                          "fixes, and is not used",
+                          fix.position_m, fix.time_s)});
+}
+
 void note_rests(const TrackOptions& options, TrackSolution& solution) {
   auto& notes = solution.notes;
   if (solution.rests_by_quietness)
@@ -45,6 +64,7 @@ void note_rests(const TrackOptions& options, TrackSolution& solution) {
                      text("%zu short quiet intervals are not rests: their velocity and level are "
                           "inconsistent with the motion between the long rests",
                           solution.false_rests)});
+  note_fixes(solution.fix_review, notes);
   if (solution.no_motion_shown)
     notes.push_back({Severity::info,
                      "no motion exceeds the noise: the interval includes a slow motion between "

@@ -59,6 +59,13 @@ AxisRun prepare_axis(const TrackSignal& signal,
                      const AxisNoise& known) {
   AxisRun run;
   run.level = level_noise(accel, readings.rests, signal.rate_hz);
+  if (readings.rests.empty()) {
+    const std::vector<unsigned char> all(accel.size(), 1);
+    run.level.sample_std_mps2 = sample_std(accel, all);
+    run.level.variance_m2ps4 =
+        std::max(run.level.variance_m2ps4,
+                 square(run.level.sample_std_mps2) / static_cast<double>(run.level.block));
+  }
   const AxisSignal axis{signal.time_s, accel, std::max(moments(accel).std(), 1e-6),
                         gap_steps / signal.rate_hz};
   run.made = axis_epochs(axis, readings, run.level);
@@ -69,6 +76,7 @@ AxisRun prepare_axis(const TrackSignal& signal,
                .rest_walk_m2ps5 = std::max(walk * walk, run.level.walk_m2ps5),
                .rest_speed_std_mps = readings.rest_speed_std_mps};
   run.start.speed_std_mps = speed_at_start_mps;
+  run.smoother_start = run.start;
   run.longest_step_s = axis.longest_step_s;
   return run;
 }
@@ -78,13 +86,48 @@ AxisPass pass_over(const AxisRun& run) {
   const InertialAxis model{run.made.epochs, run.noise};
   pass.filtered.resize(model.size());
   pass.smoothed.resize(model.size());
+  const auto keep_filtered = [&](std::size_t k, const StepOf<InertialAxis>& step) {
+    pass.filtered[k] = step.filtered;
+  };
+  const bool is_narrower = run.smoother_start.bias_std_mps2 < run.start.bias_std_mps2 ||
+                           run.smoother_start.speed_std_mps < run.start.speed_std_mps;
+  if (is_narrower) {
+    FilterState<3> state = inertial_start(run.start);
+    filter(model, 0, model.size(), Gate{}, state, keep_filtered);
+  }
   smooth(
-      model, inertial_start(run.start), Gate{},
-      [&](std::size_t k, const StepOf<InertialAxis>& step) { pass.filtered[k] = step.filtered; },
+      model, inertial_start(run.smoother_start), Gate{},
+      [&](std::size_t k, const StepOf<InertialAxis>& step) {
+        if (!is_narrower) keep_filtered(k, step);
+      },
       [&](std::size_t k, const StepOf<InertialAxis>& step, const BackwardInformation<3>& later) {
         pass.smoothed[k] = {later.mean(step.filtered), later.template cov<3>(step.filtered)};
       });
   return pass;
+}
+
+InertialStart narrowed_start(const AxisRun& run) {
+  constexpr double wider = 30.0, least_speed_mps = 0.1, least_bias_mps2 = 0.02, far = 3.0;
+  if (run.made.epochs.size() < 2 || run.made.epochs[1].resting) return run.start;
+  const Gaussian<3> wide = pass_over(run).smoothed.front();
+  const auto std_of = [&wide](int state) {
+    return std::sqrt(std::max(0.0, wide.cov(state, state)));
+  };
+  const InertialStart narrow{
+      .speed_mps = wide.mean(inertial_axis::velocity_mps),
+      .speed_std_mps =
+          std::min(run.start.speed_std_mps,
+                   std::max(least_speed_mps, wider * std_of(inertial_axis::velocity_mps))),
+      .bias_mps2 = wide.mean(inertial_axis::bias_mps2),
+      .bias_std_mps2 =
+          std::min(run.start.bias_std_mps2,
+                   std::max(least_bias_mps2, wider * std_of(inertial_axis::bias_mps2)))};
+  AxisRun again = run;
+  again.start = again.smoother_start = narrow;
+  const Gaussian<3> found = pass_over(again).smoothed.front();
+  const bool agrees = std::abs(found.mean(1) - narrow.speed_mps) < far * narrow.speed_std_mps &&
+                      std::abs(found.mean(2) - narrow.bias_mps2) < far * narrow.bias_std_mps2;
+  return agrees ? narrow : run.start;
 }
 
 FoundAxis farthest_axis(const std::vector<std::vector<double>>& velocity,

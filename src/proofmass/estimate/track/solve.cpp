@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace proofmass::estimate {
 namespace {
@@ -64,9 +65,11 @@ TrackReadings readings_of(const TrackSignal& signal, const TrackOptions& options
   readings.rests = signal.stops.rests;
   readings.rest_speed_std_mps = options.rest_speed_std_mps;
   for (const double t : options.turns_s) readings.turns.push_back(sample_at(signal.time_s, t));
-  for (const PositionFix& fix : options.fixes)
+  for (const PositionFix& fix : options.fixes) {
+    const std::size_t sample = sample_at(signal.time_s, fix.time_s);
     readings.fixes.push_back(
-        {sample_at(signal.time_s, fix.time_s), fix.position_m, fix.std_m * fix.std_m});
+        {sample, fix.position_m, fix.std_m * fix.std_m, fix.time_s - signal.time_s[sample]});
+  }
   if (options.same_place)
     readings.fixes.push_back(
         {signal.time_s.size() - 1, 0.0, options.same_place_std_m * options.same_place_std_m});
@@ -95,7 +98,7 @@ void fill_series(const TrackSignal& signal,
   for (const AxisEpochs::Gap& gap : run.made.gaps) bridge(gap, series);
 }
 
-Result<AlongAxis> solve(const TrackSignal& signal, const TrackOptions& options) {
+Result<AlongAxis> solve_errors(const TrackSignal& signal, const TrackOptions& options) {
   AlongAxis found;
   const TrackReadings readings = readings_of(signal, options);
   auto axis = options.axis ? given_axis(signal, *options.axis)
@@ -112,9 +115,18 @@ Result<AlongAxis> solve(const TrackSignal& signal, const TrackOptions& options) 
   noise.motion_walk_m2ps5 = found.error.walk_m2ps5;
   noise.motion_jump_m2ps4 = found.error.jump_m2ps4;
   noise.motion_lean_m2ps3 = found.error.lean_m2ps3;
+  return found;
+}
+
+Result<AlongAxis> solve(const TrackSignal& signal, const TrackOptions& options) {
+  auto errors = solve_errors(signal, options);
+  if (!errors) return errors.error();
+  AlongAxis found = std::move(errors).value();
+  const auto knots = join_epochs(found.run.made.epochs, found.run.made.knots);
   ConsistencyCheck check({.channels = {"position", "velocity at stops", "level at rest"}});
-  found.closures = closures(knots, noise, found.run.start, check);
+  found.closures = closures(knots, found.run.noise, found.run.start, check);
   found.consistency = check.judge();
+  found.run.smoother_start = narrowed_start(found.run);
   found.pass = pass_over(found.run);
   for (Closure& closure : found.closures) {
     const std::size_t first = sample_at(signal.time_s, signal.time_s.front() + closure.start_s);

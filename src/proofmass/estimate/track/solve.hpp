@@ -23,6 +23,10 @@ struct AlongAxis {
 /// Errors: invalid_argument (an axis of zero length, or along a missing sensor axis).
 [[nodiscard]] Result<AlongAxis> solve(const TrackSignal& signal, const TrackOptions& options);
 
+/// Only axis, measurements and errors of motion.
+[[nodiscard]] Result<AlongAxis> solve_errors(const TrackSignal& signal,
+                                             const TrackOptions& options);
+
 /// The sample nearest to a time.
 [[nodiscard]] std::size_t sample_at(View<double> time_s, double t);
 

@@ -137,6 +137,23 @@ Fields alternative_fields(const estimate::TrackAlternative& one) {
           })};
 }
 
+Field fixes_of(const estimate::FixReview& review) {
+  return field::object(
+      "fixes",
+      {field::measured("delay_s", review.delay_s, "s",
+                       {.meaning = "by which the times of the fixes are late; it is subtracted",
+                        .why_null = "the fixes show no delay of their times"}),
+       field::records("not_used", review.wrong,
+                      [](const estimate::PositionFix& fix) -> Fields {
+                        return {field::number("time_s", fix.time_s),
+                                field::number("position_m", fix.position_m)};
+                      },
+                      {.meaning = "fixes that contradict the accelerations and the other fixes"}),
+       field::count("false_rests", review.false_rests,
+                    {.meaning = "quiet intervals that are no rests by the fixes"})},
+      {.meaning = "what the fixes contradict"});
+}
+
 Fields closure_fields(const Closure& closure) {
   return {field::number("start_s", closure.start_s), field::number("end_s", closure.end_s),
           field::number("velocity_mps", closure.velocity_mps,
@@ -203,6 +220,7 @@ Fields track_fields(const TrackReport& report) {
           {.meaning = "hypotheses about which quiet intervals are rests, by decreasing "
                       "probability; present where none is clearly the most probable, and "
                       "then no method gives a displacement"}),
+      fixes_of(solution.fix_review),
       field::flag("no_motion_shown", solution.no_motion_shown,
                   {.meaning = "all of the recording is as quiet as rest: only its ends are taken "
                               "for rests"}),
