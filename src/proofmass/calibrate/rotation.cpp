@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "proofmass/calibrate/rotating/delay.hpp"
+#include "proofmass/calibrate/rotating/encoder_zero.hpp"
 #include "proofmass/calibrate/rotating/pass.hpp"
 #include "proofmass/calibrate/rotating/results.hpp"
 #include "proofmass/calibrate/rotating/ripple.hpp"
@@ -222,6 +223,7 @@ Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
   fit.steady_fraction = found.steady_s / found.recorded_s;
   fit.angle_given = !counted.front().angle_rad.empty();
   RotationState state;
+  if (fit.angle_given) state.zero = relate_zero(counted, found.sections);
   state.recordings = counted;
   state.sections = std::move(found.sections);
   state.angle_given = fit.angle_given;
@@ -264,6 +266,7 @@ Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
   fill_rotation(state, estimate, options, fit);
   fold_turns(state, fit);
   note_doubts(state, options, fit);
+  note_zero(state, fit);
   note_ripples(options, fit);
   return fit;
 }

@@ -64,6 +64,27 @@ TEST(Rotation, TakesAnEncodersAngleWrappedOrRunningBackwards) {
   EXPECT_NEAR(value_of(back.axes[0], Q::Kip), -6e-5, 1e-9);
 }
 
+// The zero was taken for that of the sensor: K1 was K1 cos 0.7.
+TEST(Rotation, FindsTheScaleFactorWhateverTheEncodersZero) {
+  PlainWheel wheel = nonlinear_wheel();
+  wheel.give_angle = true;
+  const auto counted_from = [&](double zero_rad, double speed_radps) {
+    wheel.angle = [=](double t) { return speed_radps * t; };
+    RotationRecording recording = turned(wheel);
+    for (double& angle : recording.angle_rad) angle -= zero_rad;
+    return recording;
+  };
+  const RotationFit common = fit_of({counted_from(0.7, 1.152), counted_from(0.7, 2.2)});
+  expect_coefficients(common.axes[0], wheel.equations[0], 1e-7);
+  EXPECT_EQ(common.axes[0][Q::misalignment].reason,
+            "the zero of the encoder's angle is not that of the sensor's axes");
+  EXPECT_TRUE(common.axes[0].delay_s);
+  const RotationFit own = fit_of({counted_from(0.7, 1.152), counted_from(-1.9, 2.2)});
+  expect_coefficients(own.axes[0], wheel.equations[0], 1e-7);
+  EXPECT_FALSE(own.axes[0][Q::misalignment].value);
+  EXPECT_FALSE(own.axes[0].delay_s);
+}
+
 TEST(Rotation, DoesNotSeparateRadiusAndBiasAtOneSpeed) {
   PlainWheel wheel = nonlinear_wheel();
   wheel.radius_m = 0.1;

@@ -35,7 +35,7 @@ void correct(double phase_rad, Index from, RotationEstimate& estimate) {
 }  // namespace
 
 void judge_delay(RotationState& state) {
-  if (!state.angle_given) return;
+  if (!state.angle_given || state.zero == EncoderZero::none) return;
   constexpr double least_spread = 0.2;
   state.delay_determined = speed_moments(state).variance > least_spread * least_spread;
 }

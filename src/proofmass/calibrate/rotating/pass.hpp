@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "proofmass/calibrate/rotating/encoder_zero.hpp"
 #include "proofmass/calibrate/rotating/harmonics.hpp"
 #include "proofmass/calibrate/rotating/phase_spline.hpp"
 #include "proofmass/calibrate/rotating/turns.hpp"
@@ -18,6 +19,7 @@ struct RotationState {
   View<RotationRecording> recordings;
   std::vector<SteadyTurns> sections;
   bool angle_given = false;
+  EncoderZero zero = EncoderZero::sensor;
   bool phase_defined = false;     ///< by the first axis, whose C1 is zero then
   bool speed_determined = false;  ///< ω² varies enough for its column
   bool delay_determined = false;  ///< with an encoder: ω varies enough for the delay's column

@@ -98,9 +98,11 @@ std::string why_not(const RotationState& state,
     case Q::radius:
       return state.speed_determined ? "" : std::string(one_speed);
     case Q::misalignment:
-      return state.angle_given || axis > 0
+      if (axis > 0) return "";
+      if (!state.angle_given) return "without an encoder the misalignment is part of the phase";
+      return state.zero == EncoderZero::sensor
                  ? ""
-                 : "without an encoder the misalignment is part of the phase";
+                 : "the zero of the encoder's angle is not that of the sensor's axes";
     case Q::K2_minus_Kpp:
     case Q::Kip:
       return accepted(1)

@@ -199,7 +199,17 @@ Eigen::MatrixXd section_inverse(Eigen::MatrixXd H) {
 struct RippleVerdict {
   SpeedRipple ripple;
   double sensor_bound = 0.0;  // of what the sensor may add where the ripple is accepted, 95 %
+  // Of what the sensor may hide of a ripple that is not accepted, 95 %.
+  double hidden_bound = 0.0;
 };
+
+// 95 % bound of the sensor's own terms, as ripples, if one axis does not show them: K2 of 1 mg/g²
+// is one of 0.1 % once a turn, K3 of 1 mg/g³ of 0.1 % twice a turn.
+double usual_sensor_bound(int n) {
+  constexpr double k2_g = 1e-3, k3_g2 = 1e-3;
+  if (n > 2) return 0.0;
+  return n == 1 ? k2_g : 0.5 * k3_g2;
+}
 
 // 95 % bound of a random term of the size of those in `seen`.
 double bound_by(const Eigen::VectorXd& seen) {
@@ -218,6 +228,7 @@ RippleVerdict judge(int n,
   RippleVerdict out{.ripple = {.per_turn = n}};
   out.ripple.chance_p = chance_of(e, C, dof);
   out.sensor_bound = sensor.size() > 0 ? bound_by(sensor) : e.norm();
+  out.hidden_bound = sensor.size() > 0 ? out.sensor_bound : usual_sensor_bound(n);
   const bool alone = n > 2 || out.sensor_bound < 0.5 * e.norm();
   out.ripple.accepted = alone && out.ripple.chance_p < beyond_chance;
   // Δω/ω is the derivative of the phase's error by the phase: n times as large.
@@ -398,7 +409,8 @@ void separate_ripples(const RotationState& state,
       // What noise makes of it is in the scatter already: a third of its standard deviation is
       // what an interval can spare and still be one of 95 %.
       const double noise = 0.35 * std::sqrt(covariance(part, part));
-      estimate.shared.push_back(std::max(inexact * ripple.rms(part) - noise, 0.0) * M.col(part));
+      const double size = std::hypot(inexact * ripple.rms(part), verdict.hidden_bound);
+      estimate.shared.push_back(std::max(size - noise, 0.0) * M.col(part));
       left_square += ripple.rms(part) * ripple.rms(part);
     }
   }

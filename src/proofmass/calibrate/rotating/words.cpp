@@ -87,6 +87,18 @@ void note_shared(const RotationFit& fit, std::vector<std::string>& notes) {
 
 }  // namespace
 
+void note_zero(const RotationState& state, RotationFit& fit) {
+  if (state.zero == EncoderZero::wheel)
+    fit.notes.push_back(
+        "the zero of the encoder's angle is not that of the sensor's axes: the angle is measured "
+        "from gravity in the first axis, which leaves that axis's misalignment undetermined");
+  if (state.zero == EncoderZero::none)
+    fit.notes.push_back(
+        "the encoder counts from another zero in each recording: the angle is measured from "
+        "gravity in the first axis, which leaves that axis's misalignment and the sensor's delay "
+        "undetermined");
+}
+
 void note_ripples(const RotationOptions& options, RotationFit& fit) {
   const double g = options.gravity_mps2, one = 0.01;
   // A phase error ε sin nφ, ε = one/n, moves the harmonics n ± 1 by ε/2: n = 1 both B0 and C2 of

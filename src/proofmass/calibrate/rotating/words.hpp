@@ -12,6 +12,9 @@ namespace proofmass::calibrate {
 /// Why the recording may not be a bench test.
 void note_doubts(const RotationState& state, const RotationOptions& options, RotationFit& fit);
 
+/// What the encoder's zero leaves undetermined.
+void note_zero(const RotationState& state, RotationFit& fit);
+
 /// The estimated ripples, and the effect of one attributed to the sensor.
 void note_ripples(const RotationOptions& options, RotationFit& fit);
 
