@@ -170,7 +170,9 @@ sensor::MeasuredCalibration measured(const report::TumbleReport& report,
       continue;
     }
     out.bias[*axis] = Uncertain{*channel.fit->bias_output, *channel.fit->bias_output_std};
-    out.scale[*axis] = Uncertain{*scale->value, *scale->std};
+    // The axes of a sensor file are the sensor's own.
+    const double own = channel.fit->own_axis_ratio();
+    out.scale[*axis] = Uncertain{own * *scale->value, own * *scale->std};
     out.bias_unit = channel.unit.symbol;
     out.scale_unit = scale->unit;
   }

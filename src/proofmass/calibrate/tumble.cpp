@@ -11,6 +11,7 @@
 #include "proofmass/calibrate/tumble/words.hpp"
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/number_words.hpp"
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/core/units.hpp"
 
 namespace proofmass::calibrate {
@@ -138,6 +139,17 @@ void add_zero_note(const TumbleOptions& options, TumbleFit& fit) {
         options.output_unit.empty() ? "" : " ", options.output_unit));
 }
 
+void add_misalignment_note(TumbleFit& fit) {
+  constexpr double much_rad = 0.05;
+  const double ratio = fit.own_axis_ratio();
+  const TumbleCoefficient* scale = fit.find(TumbleQuantity::K1);
+  if (scale == nullptr || !scale->value || ratio < std::hypot(1.0, much_rad)) return;
+  fit.notes.push_back(
+      fmt::format("the axis is {:.1f}° from the nominal one, by the zero of the angles: K1 is the "
+                  "component along that; along the axis itself the scale factor is {}",
+                  std::acos(1.0 / ratio) / rad_per_deg, compact(ratio * *scale->value, 5)));
+}
+
 // A misfit not explained by a single position.
 void add_unnamed_note(TumbleFit& fit) {
   constexpr double beyond_chance = 0.01;
@@ -186,6 +198,15 @@ void add_notes(View<TumblePosition> positions, bool some_noise, TumbleFit& fit) 
 
 }  // namespace
 
+double TumbleFit::own_axis_ratio() const {
+  double squares = 1.0;
+  for (const TumbleQuantity quantity :
+       {TumbleQuantity::misalignment, TumbleQuantity::misalignment_p})
+    if (const TumbleCoefficient* delta = find(quantity); delta != nullptr && delta->value)
+      squares += square(*delta->value);
+  return std::sqrt(squares);
+}
+
 const TumbleCoefficient* TumbleFit::find(TumbleQuantity quantity, int plane) const {
   const auto place = place_of(quantity, plane);
   return place ? &coefficients[*place] : nullptr;
@@ -229,6 +250,7 @@ Result<TumbleFit> fit_tumble(View<TumblePosition> positions, const TumbleOptions
   add_assumptions(solution, fit);
   add_notes(positions, stated > 0 && !fit.noise_known, fit);
   add_zero_note(options, fit);
+  add_misalignment_note(fit);
   return fit;
 }
 

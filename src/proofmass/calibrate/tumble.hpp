@@ -118,6 +118,10 @@ struct TumbleFit {
   TumbleIndexing indexing;
   std::vector<std::string> notes;  ///< sentences for the user
 
+  /// Ratio of the scale factor along the sensor's own axis to K1, its component along the nominal
+  /// one: √(1 + δo² + δp²).
+  [[nodiscard]] double own_axis_ratio() const;
+
   [[nodiscard]] const TumbleCoefficient* find(TumbleQuantity quantity, int plane = 0) const;
   /// Index of a coefficient in the list and the covariance.
   [[nodiscard]] std::optional<std::size_t> place_of(TumbleQuantity quantity, int plane = 0) const;

@@ -328,6 +328,18 @@ TEST(Tumble, TakesAnAxisByItsPhase) {
   EXPECT_NEAR(value(cosine, Q::Kip), value(sine, Q::Kip), 1e-12);
 }
 
+TEST(Tumble, SaysThatAnAxisFarFromTheNominalOneHasALargerScaleFactor) {
+  std::vector<TumblePosition> positions = read_table(table_turn(24), TableTruth{});
+  EXPECT_NEAR(fitted(positions).own_axis_ratio(), 1.0, 1e-3);
+  for (TumblePosition& p : positions) p.angle_rad -= 0.35;
+  const TumbleFit turned = fitted(positions);
+  EXPECT_NEAR(value(turned, Q::K1) * turned.own_axis_ratio(), TableTruth{}.K1,
+              1e-3 * TableTruth{}.K1);
+  EXPECT_TRUE(std::ranges::any_of(turned.notes, [](const std::string& note) {
+    return note.find("from the nominal one") != std::string::npos;
+  }));
+}
+
 TEST(Tumble, KeepsItsFiguresBesideALargeZero) {
   TableTruth truth;
   truth.K1 = 4182.0;
