@@ -199,38 +199,25 @@ void fit_with_measured_ripples(RotationState& state, RotationFit& fit) {
   fit.iterations += before;
 }
 
-}  // namespace
-
-Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
-                                 const RotationOptions& options) {
-  if (const Status status = check(recordings, options); !status) return status.error();
-  std::vector<RotationRecording> counted(recordings.begin(), recordings.end());
+// The steady turns of all recordings.
+Result<FoundTurns> steady_turns(std::vector<RotationRecording>& recordings) {
   FoundTurns found;
-  for (std::size_t k = 0; k < counted.size(); ++k) {
-    counted[k].angle_rad = counted_on(counted[k].angle_rad);
-    find_turns(counted[k], k, found);
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    recordings[k].angle_rad = counted_on(recordings[k].angle_rad);
+    find_turns(recordings[k], k, found);
   }
   std::size_t steady = 0;
   for (const SteadyTurns& one : found.sections) steady += one.turn_s.size() - 1;
-  if (steady < least_steady_turns) {
-    return Error{Errc::too_few_samples,
-                 fmt::format("{} steady turns among the {} found: at least {} are needed, in "
-                             "runs of 8 or more whose durations agree with their neighbours to "
-                             "8 %, with 16 samples each (the axle must not move)",
-                             steady, found.turns, least_steady_turns)};
-  }
-  RotationFit fit;
-  fit.steady_fraction = found.steady_s / found.recorded_s;
-  fit.angle_given = !counted.front().angle_rad.empty();
-  RotationState state;
-  if (fit.angle_given) state.zero = relate_zero(counted, found.sections);
-  state.recordings = counted;
-  state.sections = std::move(found.sections);
-  state.angle_given = fit.angle_given;
-  state.axes = counted.front().axes.size();
-  start_phase(state, options);
-  judge_speed(state, fit);
-  judge_delay(state);
+  if (steady >= least_steady_turns) return found;
+  return Error{Errc::too_few_samples,
+               fmt::format("{} steady turns among the {} found: at least {} are needed, in "
+                           "runs of 8 or more whose durations agree with their neighbours to "
+                           "8 %, with 16 samples each (the axle must not move)",
+                           steady, found.turns, least_steady_turns)};
+}
+
+// Harmonics and phase.
+Status fit_harmonics(RotationState& state, RotationFit& fit) {
   // Harmonics for the current phase, the phase shifted, and harmonics again.
   step(state, false);
   if (const Status status = settle_phase(state); !status) return status.error();
@@ -245,6 +232,13 @@ Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
     fit.converged = fit_ripples(state) && fit.converged;
   else
     fit_with_measured_ripples(state, fit);
+  return Done{};
+}
+
+// The harmonics with the scatter of their blocks and all bounds.
+RotationEstimate estimate_of(const RotationState& state,
+                             const RotationOptions& options,
+                             RotationFit& fit) {
   const RotationNormal normal = normal_equations(state);
   RotationEstimate estimate;
   estimate.harmonics.resize(state.size());
@@ -256,13 +250,38 @@ Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
   estimate.blocks = block_scores(state, solver);
   fit.blocks = static_cast<std::size_t>(estimate.blocks.scores.cols());
   fit.dof = estimate.dof();
-  if (state.axes == 2) fit.direction = state.direction > 0.0 ? 1 : -1;
   if (fit.angle_given) {
     allow_for_delay(state, options, estimate, fit);
     allow_for_radius(state, options, estimate);
   } else {
     separate_ripples(state, solver, options, estimate, fit);
   }
+  return estimate;
+}
+
+}  // namespace
+
+Result<RotationFit> fit_rotation(View<RotationRecording> recordings,
+                                 const RotationOptions& options) {
+  if (const Status status = check(recordings, options); !status) return status.error();
+  std::vector<RotationRecording> counted(recordings.begin(), recordings.end());
+  const auto found = steady_turns(counted);
+  if (!found) return found.error();
+  RotationFit fit;
+  fit.steady_fraction = found->steady_s / found->recorded_s;
+  fit.angle_given = !counted.front().angle_rad.empty();
+  RotationState state;
+  if (fit.angle_given) state.zero = relate_zero(counted, found->sections);
+  state.recordings = counted;
+  state.sections = found->sections;
+  state.angle_given = fit.angle_given;
+  state.axes = counted.front().axes.size();
+  start_phase(state, options);
+  judge_speed(state, fit);
+  judge_delay(state);
+  if (const Status status = fit_harmonics(state, fit); !status) return status.error();
+  if (state.axes == 2) fit.direction = state.direction > 0.0 ? 1 : -1;
+  const RotationEstimate estimate = estimate_of(state, options, fit);
   fill_rotation(state, estimate, options, fit);
   fold_turns(state, fit);
   note_doubts(state, options, fit);

@@ -245,29 +245,37 @@ void add_rests(const GyroscopeSession& session,
         std::max(data.white(axis), noise.axis[static_cast<std::size_t>(axis)].white * step_s);
 }
 
+Status add_session(const GyroscopeSession& session,
+                   std::size_t index,
+                   const MultiPosition& accelerometer,
+                   View<TurntableRate> table,
+                   GyroscopeData& data) {
+  if (const Status fits = check(session); !fits) return fits.error();
+  if (session.rests.empty()) return Error{Errc::too_few_samples, "gyroscope: no rest"};
+  const Result<SessionNoiseOfRate> noise = noise_of(session);
+  if (!noise) return noise.error();
+  // The accelerometer's noise and the gyroscope's: the worse known decides.
+  const double dof = std::min(session.pose_noise_dof, noise->means.noise_dof);
+  data.noise_dof = index == 0 ? dof : std::min(data.noise_dof, dof);
+  add_rests(session, index, accelerometer, *noise, data);
+  add_motions(session, index, accelerometer, *noise, data);
+  for (const TurntableRate& row : table) {
+    if (row.session != index) continue;
+    if (const Status done = add_rate(session, row, accelerometer, *noise, data); !done)
+      return done.error();
+  }
+  return Done{};
+}
+
 }  // namespace
 
 Result<GyroscopeData> gyroscope_data(View<GyroscopeSession> sessions,
                                      const MultiPosition& accelerometer,
                                      View<TurntableRate> table) {
   GyroscopeData data;
-  for (std::size_t s = 0; s < sessions.size(); ++s) {
-    const GyroscopeSession& session = sessions[s];
-    if (const Status fits = check(session); !fits) return fits.error();
-    if (session.rests.empty()) return Error{Errc::too_few_samples, "gyroscope: no rest"};
-    const Result<SessionNoiseOfRate> noise = noise_of(session);
-    if (!noise) return noise.error();
-    // The accelerometer's noise and the gyroscope's: the worse known decides.
-    const double dof = std::min(session.pose_noise_dof, noise->means.noise_dof);
-    data.noise_dof = s == 0 ? dof : std::min(data.noise_dof, dof);
-    add_rests(session, s, accelerometer, *noise, data);
-    add_motions(session, s, accelerometer, *noise, data);
-    for (const TurntableRate& row : table) {
-      if (row.session != s) continue;
-      if (const Status done = add_rate(session, row, accelerometer, *noise, data); !done)
-        return done.error();
-    }
-  }
+  for (std::size_t s = 0; s < sessions.size(); ++s)
+    if (const Status added = add_session(sessions[s], s, accelerometer, table, data); !added)
+      return added.error();
   return data;
 }
 

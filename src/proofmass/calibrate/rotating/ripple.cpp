@@ -379,6 +379,23 @@ CommonSplit common_split(const RotationState& state,
   return common;
 }
 
+// The sensor's determined terms of the order of a ripple, with two axes.
+Eigen::VectorXd seen_terms(int n, const RotationState& state, const Eigen::VectorXd& sensor) {
+  if (state.axes < 2 || n > 2) return {};
+  return n == 1 ? Eigen::VectorXd(sensor.head<2>()) : Eigen::VectorXd(sensor.tail<1>());
+}
+
+// Leaves a part of the ripple with the sensor, though it may be due to the ripple.
+void leave_with_sensor(double mean,
+                       double half_width,
+                       const Eigen::VectorXd& moved,
+                       const Eigen::RowVectorXd& scores,
+                       RotationEstimate& estimate) {
+  estimate.harmonics += mean * moved;
+  estimate.blocks.scores += moved * scores;
+  estimate.shared.push_back(half_width * moved);
+}
+
 }  // namespace
 
 void separate_ripples(const RotationState& state,
@@ -392,10 +409,8 @@ void separate_ripples(const RotationState& state,
   const Eigen::MatrixXd covariance = estimate.covariance_of(split.ripple_scores);
   double left_square = 0.0;
   for (int n = 1; n <= highest_ripple; ++n) {
-    Eigen::VectorXd seen;
-    if (state.axes == 2 && n == 1) seen = split.sensor.head<2>();
-    if (state.axes == 2 && n == 2) seen = split.sensor.tail<1>();
-    const RippleVerdict verdict = judge(n, ripple.mean, covariance, seen, estimate.dof());
+    const RippleVerdict verdict =
+        judge(n, ripple.mean, covariance, seen_terms(n, state, split.sensor), estimate.dof());
     fit.ripples.push_back(verdict.ripple);
     for (const Index part : shared) {
       if (part / 2 != n - 1) continue;
@@ -403,14 +418,12 @@ void separate_ripples(const RotationState& state,
         estimate.bounds.push_back(verdict.sensor_bound * M.col(part));
         continue;
       }
-      // Left with the sensor, though it may be due to the ripple.
-      estimate.harmonics += ripple.mean(part) * M.col(part);
-      estimate.blocks.scores += M.col(part) * split.ripple_scores.row(part);
       // What noise makes of it is in the scatter already: a third of its standard deviation is
       // what an interval can spare and still be one of 95 %.
       const double noise = 0.35 * std::sqrt(covariance(part, part));
       const double size = std::hypot(inexact * ripple.rms(part), verdict.hidden_bound);
-      estimate.shared.push_back(std::max(size - noise, 0.0) * M.col(part));
+      leave_with_sensor(ripple.mean(part), std::max(size - noise, 0.0), M.col(part),
+                        split.ripple_scores.row(part), estimate);
       left_square += ripple.rms(part) * ripple.rms(part);
     }
   }

@@ -179,7 +179,7 @@ class NoiseSearch {
   void search() {
     double best = probability();
     for (const double factor : {2.0, 2.0, 1.41})
-      for (const Parameter& parameter : parameters_) {
+      for (const Parameter& parameter : parameters) {
         if (parameter.of_fixes && !model_.with_fixes) continue;
         climb(model_.noise.*parameter.value, factor, best);
         climb(model_.noise.*parameter.value, 1.0 / factor, best);
@@ -224,17 +224,16 @@ class NoiseSearch {
     double usual, spread;  ///< median, and standard deviation of the logarithm
     bool of_fixes;
   };
-  static constexpr std::array<Parameter, 4> parameters_{
-      {{&Noise::slip_m_per_rtm, 0.004, 0.7, false},
-       {&Noise::fix_std_m, 0.15, 1.0, true},
-       {&Noise::wander_std_m, 0.7, 1.0, true},
-       {&Noise::wander_s, 30.0, 0.5, true}}};
+  static constexpr std::array<Parameter, 4> parameters{{{&Noise::slip_m_per_rtm, 0.004, 0.7, false},
+                                                        {&Noise::fix_std_m, 0.15, 1.0, true},
+                                                        {&Noise::wander_std_m, 0.7, 1.0, true},
+                                                        {&Noise::wander_s, 30.0, 0.5, true}}};
 
   [[nodiscard]] double probability() const {
     Gaussian<at::states> prior = prior_;
     set_wander(model_, prior);
     double sum = run(model_, prior, path_, false).log_likelihood;
-    for (const Parameter& parameter : parameters_)
+    for (const Parameter& parameter : parameters)
       if (!parameter.of_fixes || model_.with_fixes)
         sum -= 0.5 *
                square(std::log(model_.noise.*parameter.value / parameter.usual) / parameter.spread);

@@ -14,21 +14,25 @@ constexpr Uncertain usual_track_m{1.2, 0.6}, usual_base_m{2.6, 0.5};
 // Which of the wheels are on the steered axle.
 using Steered = std::array<bool, most_drive_wheels>;
 
-// Every assignment with at most one wheel of a side on either axle that agrees with what is given.
+// Whether an assignment agrees with what is given and has at most one wheel of a side on either
+// axle; several on an axle if none is steered.
+bool is_possible(const Steered& steered, const std::vector<DriveWheel>& wheels) {
+  std::array<std::array<int, 2>, 2> count{};
+  for (std::size_t i = 0; i < wheels.size(); ++i) {
+    if (wheels[i].steered.value_or(steered[i]) != steered[i]) return false;
+    ++count[wheels[i].side == VehicleSide::left ? 1 : 0][steered[i] ? 1 : 0];
+  }
+  const bool any = std::ranges::find(steered, true) != steered.end();
+  return std::ranges::all_of(
+      count, [any](const auto& side) { return side[1] <= 1 && (!any || side[0] <= 1); });
+}
+
 std::vector<Steered> assignments(const std::vector<DriveWheel>& wheels) {
   std::vector<Steered> all;
   for (unsigned bits = 0; bits < 1u << wheels.size(); ++bits) {
     Steered steered{};
-    std::array<std::array<int, 2>, 2> count{};
-    bool fits = true;
-    for (std::size_t i = 0; i < wheels.size(); ++i) {
-      steered[i] = ((bits >> i) & 1u) != 0;
-      fits = fits && wheels[i].steered.value_or(steered[i]) == steered[i];
-      ++count[wheels[i].side == VehicleSide::left ? 1 : 0][steered[i] ? 1 : 0];
-    }
-    for (const auto& side : count)
-      if (side[1] > 1 || (bits != 0 && side[0] > 1)) fits = false;
-    if (fits) all.push_back(steered);
+    for (std::size_t i = 0; i < wheels.size(); ++i) steered[i] = ((bits >> i) & 1u) != 0;
+    if (is_possible(steered, wheels)) all.push_back(steered);
   }
   return all;
 }

@@ -16,6 +16,31 @@
 // filter/kalman_filter.hpp forwards, filter/bryson_frazier.hpp backwards.
 namespace proofmass::estimate {
 
+/// For each chunk, the last first: rerun(chunk, steps), on a second thread during go_back(chunk,
+/// steps) of the next.
+template <class Step, class Rerun, class GoBack>
+void go_back_with_a_thread(std::size_t chunks,
+                           std::size_t chunk,
+                           const Rerun& rerun,
+                           const GoBack& go_back) {
+  std::array steps{std::vector<Step>(chunk), std::vector<Step>(chunk)};  // of even and odd chunks
+  std::counting_semaphore<> free(2), ready(0);
+  const std::jthread ahead([&](const std::stop_token& stop) {
+    const std::stop_callback wake(stop, [&] { free.release(); });
+    for (std::size_t c = chunks; c-- > 0;) {
+      free.acquire();
+      if (stop.stop_requested()) return;
+      rerun(c, steps[c % 2]);
+      ready.release();
+    }
+  });
+  for (std::size_t c = chunks; c-- > 0;) {
+    ready.acquire();
+    go_back(c, steps[c % 2]);
+    free.release();
+  }
+}
+
 /// Forward and backward pass over `size` epochs: advance(state, k, step) and forward(k, step) for
 /// each, then backward(k, step) in falling k. The forward pass stores the state at every `chunk`-th
 /// epoch, `shortest` or as many as make 4096 states; the backward pass reruns each chunk, so that
@@ -48,29 +73,11 @@ void there_and_back(
     const std::size_t first = c * chunk, last = std::min(first + chunk, size);
     for (std::size_t k = last; k-- > first;) backward(k, steps[k - first]);
   };
-  if (size < worth_a_thread) {
-    std::vector<Step> steps(std::min(chunk, size));
-    for (std::size_t c = chunks; c-- > 0;) {
-      rerun(c, steps);
-      go_back(c, steps);
-    }
-    return;
-  }
-  std::array steps{std::vector<Step>(chunk), std::vector<Step>(chunk)};  // of even and odd chunks
-  std::counting_semaphore<> free(2), ready(0);
-  const std::jthread ahead([&](const std::stop_token& stop) {
-    const std::stop_callback wake(stop, [&] { free.release(); });
-    for (std::size_t c = chunks; c-- > 0;) {
-      free.acquire();
-      if (stop.stop_requested()) return;
-      rerun(c, steps[c % 2]);
-      ready.release();
-    }
-  });
+  if (size >= worth_a_thread) return go_back_with_a_thread<Step>(chunks, chunk, rerun, go_back);
+  std::vector<Step> steps(std::min(chunk, size));
   for (std::size_t c = chunks; c-- > 0;) {
-    ready.acquire();
-    go_back(c, steps[c % 2]);
-    free.release();
+    rerun(c, steps);
+    go_back(c, steps);
   }
 }
 

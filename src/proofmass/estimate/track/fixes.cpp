@@ -147,21 +147,25 @@ class FixComparison {
     return one ? log_density_of_fixes(*one) : -std::numeric_limits<double>::infinity();
   }
 
-  /// Over ± 1 s, on a logarithmic grid that is refined about the best value; the standard deviation
-  /// is that of the parabola there.
-  [[nodiscard]] std::optional<Uncertain> most_likely_delay() const {
+  /// The most likely delay of a logarithmic grid over ± 1 s; 0 for none.
+  [[nodiscard]] double rough_delay_s() const {
     constexpr std::array<double, 6> grid_s{0.01, 0.03, 0.1, 0.2, 0.5, 1.0};
-    double best_s = 0.0, best = log_density_, step_s = 0.0;
+    double best_s = 0.0, best = log_density_;
     for (const double size_s : grid_s)
       for (const double delay_s : {size_s, -size_s}) {
         const double value = log_density(signal_, delayed(delay_s));
         if (value <= best) continue;
         best = value;
         best_s = delay_s;
-        step_s = 0.3 * size_s;
       }
+    return best_s;
+  }
+
+  /// Refined by parabolas; the standard deviation is that of the last.
+  [[nodiscard]] std::optional<Uncertain> most_likely_delay() const {
+    double best_s = rough_delay_s(), step_s = 0.3 * std::abs(best_s), curvature = 0.0;
     if (best_s == 0.0) return std::nullopt;
-    double curvature = 0.0;
+    double best = log_density(signal_, delayed(best_s));
     constexpr int rounds = 6;
     for (int round = 0; round < rounds; ++round) {
       const double below = log_density(signal_, delayed(best_s - step_s)),
