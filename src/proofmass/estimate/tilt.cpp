@@ -54,6 +54,7 @@ Result<TiltSolution> estimate_tilt(const TiltRecord& all, const TiltOptions& giv
   solution.moving = *moving;
   if (solution.moving) {
     drop_slow_motion(record, found);
+    if (has_rates(record)) leave_out_rotations(record, options, found);
     leave_out_hidden_onsets(record, found);
   }
   if (!solution.moving && found.rests.empty()) {

@@ -164,6 +164,47 @@ bool level_creeps(const TiltRecord& record,
   });
 }
 
+// The rate of one axis over a rest.
+struct RestRate {
+  double median = 0.0, std = 0.0;  // of one measurement
+
+  RestRate(const std::vector<double>& rate, const signal::Rest& rest) {
+    std::vector<double> values;
+    for (std::size_t k = rest.first; k <= rest.last; ++k)
+      if (std::isfinite(rate[k])) values.push_back(rate[k]);
+    median = proofmass::median(values).value_or(0.0);
+    std = robust_std(values).value_or(0.0);
+    if (std == 0.0) std = moments(values).std();  // most have one code of a converter
+  }
+  // Whether the mean rate of these samples departs from the median by more than noise and the drift
+  // of a bias.
+  [[nodiscard]] bool turns(View<double> rate) const {
+    constexpr double clear = 6.0, drift_radps = 2e-3;
+    Moments part;
+    for (const double one : rate)
+      if (std::isfinite(one)) part.add(one);
+    return part.count > 0 &&
+           std::abs(part.mean - median) >
+               drift_radps + clear * std / std::sqrt(static_cast<double>(part.count));
+  }
+};
+
+// Whether the base turns in each block of a rest.
+std::vector<bool> turning_blocks(const TiltRecord& record,
+                                 const signal::Rest& rest,
+                                 std::size_t block) {
+  std::vector<bool> turning((rest.last - rest.first) / block + 1, false);
+  for (const std::vector<double>& axis : record.rate_radps) {
+    const RestRate rate(axis, rest);
+    for (std::size_t b = 0; b < turning.size(); ++b) {
+      const std::size_t first = rest.first + b * block;
+      const std::size_t count = std::min(block, rest.last + 1 - first);
+      turning[b] = turning[b] || rate.turns(View<double>(axis).subspan(first, count));
+    }
+  }
+  return turning;
+}
+
 }  // namespace
 
 signal::RestSearch rests_of(const TiltRecord& record, const TiltOptions& options) {
@@ -209,6 +250,32 @@ void drop_slow_motion(const TiltRecord& record, signal::RestSearch& found) {
              left_of_polynomial(axis, rest) <= square(edge * found.noise_std[row++]);
     });
   });
+}
+
+void leave_out_rotations(const TiltRecord& record,
+                         const TiltOptions& options,
+                         signal::RestSearch& found) {
+  constexpr double block_s = 0.1, usual_shortest_s = 0.5;
+  const double rate_hz = usual_rate_hz(record.time_s);
+  const auto block = static_cast<std::size_t>(std::max(1.0, std::round(block_s * rate_hz)));
+  const auto shortest =
+      static_cast<std::size_t>(options.shortest_rest_s.value_or(usual_shortest_s) * rate_hz);
+  std::vector<signal::Rest> kept;
+  for (const signal::Rest& rest : found.rests) {
+    const std::vector<bool> turning = turning_blocks(record, rest, block);
+    std::size_t first = rest.first;
+    const auto keep_until = [&](std::size_t end) {
+      if (end > first && end - first >= std::max<std::size_t>(shortest, 2))
+        kept.push_back({first, end - 1});
+    };
+    for (std::size_t b = 0; b < turning.size(); ++b) {
+      if (!turning[b]) continue;
+      keep_until(rest.first + b * block);
+      first = rest.first + (b + 1) * block;
+    }
+    keep_until(rest.last + 1);
+  }
+  found.rests = std::move(kept);
 }
 
 void leave_out_hidden_onsets(const TiltRecord& record, signal::RestSearch& found) {

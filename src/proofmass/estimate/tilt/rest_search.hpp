@@ -17,6 +17,12 @@ namespace proofmass::estimate {
 /// changes by more than 2 mg √(duration/60 s), clearly beyond noise.
 void drop_slow_motion(const TiltRecord& record, signal::RestSearch& found);
 
+/// For a moving base with a gyroscope: rests are divided at tenths of a second whose rate departs
+/// from the median of the rest by more than 0.002 rad/s and six standard deviations.
+void leave_out_rotations(const TiltRecord& record,
+                         const TiltOptions& options,
+                         signal::RestSearch& found);
+
 /// For a moving base: next to motion a rest loses 0.4 s, or a quarter, in which a slow onset is
 /// hidden in the noise. Angles there would be stated to be those of the rest, to its accuracy.
 void leave_out_hidden_onsets(const TiltRecord& record, signal::RestSearch& found);
