@@ -102,10 +102,10 @@ class FixComparison {
     return true;
   }
 
-  /// Removes the fix without which the others have the highest density, if it is far from the
-  /// position without it.
+  /// Removes the fix without which the others have the highest density, if that is higher
+  /// than with it and the fix is far from the position without it.
   std::optional<PositionFix> drop_a_fix() {
-    constexpr double far = 6.0;
+    constexpr double far = 6.0, higher = 2.0;
     double best = -std::numeric_limits<double>::infinity();
     std::size_t worst = 0;
     for (std::size_t i = 0; i < options_.fixes.size(); ++i) {
@@ -116,7 +116,8 @@ class FixComparison {
     }
     const PositionFix fix = options_.fixes[worst];
     const auto without = solve(signal_, without_fix(worst));
-    if (!without || deviation(*without, fix) < far) return std::nullopt;
+    if (!without || best < log_density_ + higher || deviation(*without, fix) < far)
+      return std::nullopt;
     take(without_fix(worst));
     return fix;
   }

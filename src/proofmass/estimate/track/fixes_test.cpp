@@ -100,6 +100,20 @@ TEST(TrackFixes, BetweenSamplesAndWithoutARestGiveTheTruth) {
   }
 }
 
+// From 40 s to the next fix the prior at the start is uncertain by kilometres.
+TEST(TrackFixes, FarApartKeepTheirDigits) {
+  Swing swing(11);
+  swing.length_s = 1000.0;
+  swing.noise_std_mps2 = 0.01;
+  const auto solution = estimate_track(swing.sensor(), swing.options(40.4337, 0.01));
+  ASSERT_TRUE(solution) << solution.error().message;
+  ASSERT_TRUE(solution->smoother);
+  EXPECT_TRUE(solution->fix_review.wrong.empty());
+  const auto [share, largest] = swing.inside(*solution);
+  EXPECT_GT(share, 0.8);
+  EXPECT_LT(largest, 4.0);
+}
+
 TEST(TrackFixes, AWrongOneIsNotUsed) {
   Swing swing(3);
   TrackOptions options = swing.options(2.6137, 0.003);

@@ -1,7 +1,9 @@
 #include "proofmass/estimate/track/motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
@@ -106,28 +108,46 @@ AxisPass pass_over(const AxisRun& run) {
   return pass;
 }
 
-InertialStart narrowed_start(const AxisRun& run) {
-  constexpr double wider = 30.0, least_speed_mps = 0.1, least_bias_mps2 = 0.02, far = 3.0;
-  if (run.made.epochs.size() < 2 || run.made.epochs[1].resting) return run.start;
-  const Gaussian<3> wide = pass_over(run).smoothed.front();
-  const auto std_of = [&wide](int state) {
-    return std::sqrt(std::max(0.0, wide.cov(state, state)));
+namespace {
+
+struct StartStd {
+  double speed_mps, bias_mps2;
+};
+
+// The prior about the state that it leads to, within 30 of its standard deviations or `least`.
+// nullopt if that state is not within the prior.
+std::optional<InertialStart> narrower(AxisRun run, const StartStd& least) {
+  constexpr double wider = 30.0, far = 3.0;
+  constexpr int v = inertial_axis::velocity_mps, b = inertial_axis::bias_mps2;
+  run.start = run.smoother_start;
+  const Gaussian<3> found = pass_over(run).smoothed.front();
+  const InertialStart& prior = run.start;
+  if (std::abs(found.mean(v) - prior.speed_mps) > far * prior.speed_std_mps ||
+      std::abs(found.mean(b) - prior.bias_mps2) > far * prior.bias_std_mps2)
+    return std::nullopt;
+  const auto within = [&](int state, double least_std, double prior_std) {
+    const double std = std::sqrt(std::max(0.0, found.cov(state, state)));
+    return std::min(prior_std, std::max(least_std, wider * std));
   };
-  const InertialStart narrow{
-      .speed_mps = wide.mean(inertial_axis::velocity_mps),
-      .speed_std_mps =
-          std::min(run.start.speed_std_mps,
-                   std::max(least_speed_mps, wider * std_of(inertial_axis::velocity_mps))),
-      .bias_mps2 = wide.mean(inertial_axis::bias_mps2),
-      .bias_std_mps2 =
-          std::min(run.start.bias_std_mps2,
-                   std::max(least_bias_mps2, wider * std_of(inertial_axis::bias_mps2)))};
-  AxisRun again = run;
-  again.start = again.smoother_start = narrow;
-  const Gaussian<3> found = pass_over(again).smoothed.front();
-  const bool agrees = std::abs(found.mean(1) - narrow.speed_mps) < far * narrow.speed_std_mps &&
-                      std::abs(found.mean(2) - narrow.bias_mps2) < far * narrow.bias_std_mps2;
-  return agrees ? narrow : run.start;
+  return InertialStart{.speed_mps = found.mean(v),
+                       .speed_std_mps = within(v, least.speed_mps, prior.speed_std_mps),
+                       .bias_mps2 = found.mean(b),
+                       .bias_std_mps2 = within(b, least.bias_mps2, prior.bias_std_mps2)};
+}
+
+}  // namespace
+
+InertialStart narrowed_start(const AxisRun& run) {
+  // In two steps, since the first one has lost the digits of what it finds.
+  constexpr std::array<StartStd, 2> steps{{{0.1, 0.02}, {3e-3, 3e-4}}};
+  if (run.made.epochs.size() < 2 || run.made.epochs[1].resting) return run.start;
+  AxisRun trial = run;
+  for (const StartStd& least : steps) {
+    const auto narrow = narrower(trial, least);
+    if (!narrow) return run.start;
+    trial.smoother_start = *narrow;
+  }
+  return narrower(trial, steps.back()) ? trial.smoother_start : run.start;
 }
 
 FoundAxis farthest_axis(const std::vector<std::vector<double>>& velocity,
