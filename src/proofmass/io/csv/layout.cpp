@@ -117,12 +117,14 @@ std::vector<Line> find_rows(const std::vector<Line>& lines, CsvLayout& layout) {
   return rows;
 }
 
-/// True if a word is a number in an ambiguous notation: "(0.5)", "5 %", "1.5 g", "1.5D-3",
-/// full-width digits.
-bool is_odd_figure(std::string_view word) {
-  constexpr std::string_view figures = "0123456789.,'_() %";
-  word = trimmed(word);
+std::string_view without_sign(std::string_view word) {
   if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
+  return word;
+}
+
+/// Removes the figures at the beginning of a word; false if no digit is among them.
+bool take_figures(std::string_view& word) {
+  constexpr std::string_view figures = "0123456789.,'_() %";
   constexpr std::string_view full_width = "\xEF\xBC";  // prefix of U+FF00 … U+FF3F
   bool has_digit = false;
   while (!word.empty()) {
@@ -133,32 +135,49 @@ bool is_odd_figure(std::string_view word) {
     has_digit = has_digit || is_wide || is_digit(word[0]);
     word.remove_prefix(is_wide ? 3 : 1);
   }
-  if (!has_digit) return false;
-  if (!word.empty() && (word[0] == 'D' || word[0] == 'd')) {
-    word.remove_prefix(1);
-    if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
-    return !word.empty() && std::ranges::all_of(word, is_digit);
-  }
-  return word.empty() || parse_unit(word).has_value();
+  return has_digit;
 }
+
+/// True if a word is a number in an ambiguous notation: "(0.5)", "5 %", "1.5 g", "1.5D-3",
+/// full-width digits.
+bool is_odd_figure(std::string_view word) {
+  word = without_sign(trimmed(word));
+  if (!take_figures(word)) return false;
+  if (!word.starts_with('D') && !word.starts_with('d'))
+    return word.empty() || parse_unit(word).has_value();
+  word = without_sign(word.substr(1));
+  return !word.empty() && std::ranges::all_of(word, is_digit);
+}
+
+/// The words of a text column, and those that resemble numbers.
+struct OddFigures {
+  std::size_t words = 0, odd = 0;
+  std::string first{};
+
+  void add(std::string_view field) {
+    field = trimmed(field);
+    if (field.empty()) return;
+    ++words;
+    if (!is_odd_figure(field)) return;
+    constexpr std::size_t longest = 24;
+    if (odd++ == 0) first = field.substr(0, longest);
+  }
+  [[nodiscard]] bool is_most() const { return 2 * odd > words; }
+};
 
 /// Text columns that are mostly odd numbers.
 void note_odd_figures(const std::vector<Line>& rows, CsvLayout& layout) {
   const std::size_t width = layout.columns.size();
-  layout.odd_figures.assign(width, {});
-  std::vector<std::size_t> odd(width, 0), words(width, 0);
+  std::vector<OddFigures> columns(width);
   std::vector<std::string_view> fields;
   for (const Line& row : rows) {
     split_fields(row.text, layout.separator, fields);
-    for (std::size_t c = 0; c < std::min(width, fields.size()); ++c) {
-      if (layout.columns[c] != ColumnKind::text || trimmed(fields[c]).empty()) continue;
-      ++words[c];
-      if (!is_odd_figure(fields[c])) continue;
-      if (odd[c]++ == 0) layout.odd_figures[c] = trimmed(fields[c]).substr(0, 24);
-    }
+    for (std::size_t c = 0; c < std::min(width, fields.size()); ++c)
+      if (layout.columns[c] == ColumnKind::text) columns[c].add(fields[c]);
   }
-  for (std::size_t c = 0; c < width; ++c)
-    if (odd[c] * 2 <= words[c]) layout.odd_figures[c].clear();
+  layout.odd_figures.clear();
+  for (const OddFigures& column : columns)
+    layout.odd_figures.push_back(column.is_most() ? column.first : std::string{});
 }
 
 /// Fills in the position of the rows and the preceding lines; false if there is no row.
