@@ -69,4 +69,11 @@ std::vector<bool> saturated_rows(const std::array<std::vector<double>, 3>& axes)
   return out;
 }
 
+std::size_t drop_rows(const std::vector<bool>& rows, std::array<std::vector<double>, 3>& axes) {
+  for (std::vector<double>& axis : axes)
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      if (rows[row]) axis[row] = std::numeric_limits<double>::quiet_NaN();
+  return static_cast<std::size_t>(std::ranges::count(rows, true));
+}
+
 }  // namespace proofmass::signal

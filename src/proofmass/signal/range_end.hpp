@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "proofmass/core/view.hpp"
@@ -16,5 +17,8 @@ namespace proofmass::signal {
 /// The rows in which any axis of a gyroscope is at an end of its range. A constant axis, as of
 /// exact numbers, is not. Axes of one length.
 [[nodiscard]] std::vector<bool> saturated_rows(const std::array<std::vector<double>, 3>& axes);
+
+/// Makes the marked rows NaN; returns their number.
+std::size_t drop_rows(const std::vector<bool>& rows, std::array<std::vector<double>, 3>& axes);
 
 }  // namespace proofmass::signal

@@ -56,7 +56,11 @@ TEST(RangeEnd, IsEveryValueOfAConstantChannelButNotNan) {
   std::array<std::vector<double>, 3> axes;
   axes.fill(std::vector<double>(2000, 0.0));
   axes[1] = swings(1e-3, 1e-3, 0.7);
-  EXPECT_EQ(std::ranges::count(saturated_rows(axes), true), marked(axes[1]));
+  const std::vector<bool> rows = saturated_rows(axes);
+  EXPECT_EQ(std::ranges::count(rows, true), marked(axes[1]));
+  EXPECT_EQ(drop_rows(rows, axes), static_cast<std::size_t>(std::ranges::count(rows, true)));
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    EXPECT_EQ(std::isnan(axes[0][row]), rows[row]) << row;
 }
 
 }  // namespace

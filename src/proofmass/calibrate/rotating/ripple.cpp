@@ -199,7 +199,7 @@ Eigen::MatrixXd section_inverse(Eigen::MatrixXd H) {
 struct RippleVerdict {
   SpeedRipple ripple;
   double sensor_bound = 0.0;  // of what the sensor may add where the ripple is accepted, 95 %
-  // Of what the sensor may hide of a ripple that is not accepted, 95 %.
+  // 95 % bound on a ripple that the sensor's own terms may cancel, where none is accepted.
   double hidden_bound = 0.0;
 };
 

@@ -74,12 +74,6 @@ void drop_beyond(double most, std::array<std::vector<double>, 3>& axes) {
       if (std::abs(value) > most) value = no_value;
 }
 
-void drop_rows(const std::vector<bool>& rows, std::array<std::vector<double>, 3>& axes) {
-  for (std::vector<double>& axis : axes)
-    for (std::size_t k = 0; k < rows.size(); ++k)
-      if (rows[k]) axis[k] = no_value;
-}
-
 }  // namespace
 
 std::optional<TiltRecord> without_unusable(const TiltRecord& record, std::vector<Note>& notes) {
@@ -100,7 +94,7 @@ std::optional<TiltRecord> without_unusable(const TiltRecord& record, std::vector
                                             " beyond 1000 g or 10000 rad/s and not used"});
   }
   if (rows > 0) {
-    drop_rows(saturated, out.rate_radps);
+    signal::drop_rows(saturated, out.rate_radps);
     notes.push_back({Severity::warning, std::to_string(rows) +
                                             " rows have an angular rate at the limit of the "
                                             "gyroscope's range, which is not used"});

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -83,12 +82,9 @@ UsableSeries usable_series(const TrackSensor& sensor) {
   for (auto* sensors : {&series.rate_radps, &series.accel_mps2})
     for (auto& axis : *sensors)
       for (double& value : axis) value = signal::plausible_or_nan(value);
-  const std::vector<bool> saturated = signal::saturated_rows(series.rate_radps);
-  for (auto& axis : series.rate_radps)
-    for (std::size_t k = 0; k < axis.size(); ++k)
-      if (saturated[k]) axis[k] = std::numeric_limits<double>::quiet_NaN();
-  const auto count = std::ranges::count(saturated, true);
-  return {std::move(series), static_cast<std::size_t>(count)};
+  const std::size_t saturated =
+      signal::drop_rows(signal::saturated_rows(series.rate_radps), series.rate_radps);
+  return {std::move(series), saturated};
 }
 
 // Outside of a stretch the attitude is NaN.

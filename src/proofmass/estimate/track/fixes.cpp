@@ -92,7 +92,7 @@ class FixComparison {
       else
         trial.stops.rests.clear();
       const double value = log_density(trial, options_);
-      if (value < best) continue;
+      if (!(value >= best)) continue;
       best = value;
       kept = trial.stops.rests;
     }
@@ -110,7 +110,7 @@ class FixComparison {
     std::size_t worst = 0;
     for (std::size_t i = 0; i < options_.fixes.size(); ++i) {
       const double value = log_density(signal_, without_fix(i));
-      if (value <= best) continue;
+      if (!(value > best)) continue;
       best = value;
       worst = i;
     }
@@ -155,7 +155,7 @@ class FixComparison {
     for (const double size_s : grid_s)
       for (const double delay_s : {size_s, -size_s}) {
         const double value = log_density(signal_, delayed(delay_s));
-        if (value <= best) continue;
+        if (!(value > best)) continue;
         best = value;
         best_s = delay_s;
       }
@@ -184,7 +184,7 @@ class FixComparison {
     return Uncertain{best_s, curvature > 0.0 ? 1.0 / std::sqrt(curvature) : step_s};
   }
 
-  /// Of a fix from a solution without it, in standard deviations of their difference.
+  /// Distance of a fix from a solution without it, in standard deviations of their difference.
   [[nodiscard]] double deviation(const AlongAxis& without, const PositionFix& fix) const {
     const Gaussian<3>& at = state_at(without, fix);
     const double after_s = fix.time_s - signal_.time_s[sample_at(signal_.time_s, fix.time_s)];

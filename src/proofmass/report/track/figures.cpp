@@ -133,8 +133,9 @@ Figure position_figure(const TrackReport& report) {
   range.hold(smoothed.upper);
   range.hold_most(series.filtered_position_m);
   Curve fixes{"fixes", {}, {}, Ink::orange, Mark::points};
+  const auto& delay_s = report.solution.fix_review.delay_s;
   for (const estimate::PositionFix& fix : report.options.fixes) {
-    fixes.x.push_back(fix.time_s);
+    fixes.x.push_back(fix.time_s - (delay_s ? delay_s->value : 0.0));
     fixes.y.push_back(fix.position_m);
   }
   range.hold(fixes.y);
