@@ -152,6 +152,7 @@ TEST(Schemas, Track) {
   TrackReport jerk = fake_jerk();
   jerk.solution.consistency = full_consistency();
   jerk.solution.alternatives.push_back({.probability = 0.5, .no_rests = {{1.0, 2.0}}});
+  jerk.options.fixes = {{1.0, 0.2, 0.01}};
   jerk.solution.fix_review = {
       .false_rests = 1, .wrong = {{1.0, 0.2, 0.01}}, .delay_s = Uncertain{0.05, 0.01}};
   expect_schema("Displacement along the axis of motion. SI.",

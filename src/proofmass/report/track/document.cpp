@@ -137,21 +137,24 @@ Fields alternative_fields(const estimate::TrackAlternative& one) {
           })};
 }
 
-Field fixes_of(const estimate::FixReview& review) {
-  return field::object(
-      "fixes",
-      {field::measured("delay_s", review.delay_s, "s",
-                       {.meaning = "by which the times of the fixes are late; it is subtracted",
-                        .why_null = "the fixes show no delay of their times"}),
-       field::records("not_used", review.wrong,
-                      [](const estimate::PositionFix& fix) -> Fields {
-                        return {field::number("time_s", fix.time_s),
-                                field::number("position_m", fix.position_m)};
-                      },
-                      {.meaning = "fixes that contradict the accelerations and the other fixes"}),
-       field::count("false_rests", review.false_rests,
-                    {.meaning = "quiet intervals that are no rests by the fixes"})},
-      {.meaning = "what the fixes contradict"});
+Field fixes_of(const TrackReport& report) {
+  const estimate::FixReview& review = report.solution.fix_review;
+  std::optional<Fields> fields;
+  if (!report.options.fixes.empty())
+    fields = Fields{
+        field::measured("delay_s", review.delay_s, "s",
+                        {.meaning = "by which the times of the fixes are late; it is subtracted",
+                         .why_null = "the fixes show no delay of their times"}),
+        field::records("not_used", review.wrong,
+                       [](const estimate::PositionFix& fix) -> Fields {
+                         return {field::number("time_s", fix.time_s),
+                                 field::number("position_m", fix.position_m)};
+                       },
+                       {.meaning = "fixes that contradict the accelerations and the other fixes"}),
+        field::count("false_rests", review.false_rests,
+                     {.meaning = "quiet intervals that are no rests by the fixes"})};
+  return field::object_or_null("fixes", std::move(fields),
+                               {.meaning = "what the fixes contradict", .why_null = "no fixes"});
 }
 
 Fields closure_fields(const Closure& closure) {
@@ -220,7 +223,7 @@ Fields track_fields(const TrackReport& report) {
           {.meaning = "hypotheses about which quiet intervals are rests, by decreasing "
                       "probability; present where none is clearly the most probable, and "
                       "then no method gives a displacement"}),
-      fixes_of(solution.fix_review),
+      fixes_of(report),
       field::flag("no_motion_shown", solution.no_motion_shown,
                   {.meaning = "all of the recording is as quiet as rest: only its ends are taken "
                               "for rests"}),
