@@ -1,5 +1,6 @@
 #include "proofmass/estimate/tilt.hpp"
 
+#include <optional>
 #include <string>
 
 #include "proofmass/estimate/tilt/epochs.hpp"
@@ -22,12 +23,10 @@ void follow(const TiltRecord& record, const TiltOptions& options, TiltSolution& 
   const TiltKnown known = known_of(record, options, solution, epochs);
   if (options.progress) options.progress("fitting the noise", 0.0);
   const bool gyroscope = has_rates(record);
-  RateBias rate_bias;
+  std::optional<RateBias> rate_bias;
   // The rotation of a biased gyroscope would count as acceleration: repeated without its bias.
   for (int round = 0; round < (gyroscope ? 2 : 1); ++round) {
-    const double memory_s =
-        gyroscope ? mean_memory_s(rate_bias.tilting_std_radps, known.gravity_mps2) : 20.0;
-    const BaseAccel accel = base_accel(epochs, rate_bias.mean_radps, known, memory_s);
+    const BaseAccel accel = base_accel(epochs, rate_bias, known);
     epochs.accel_cov_m2ps4 = accel.cov_m2ps4;
     solution.motion = fit_tilt_motion(epochs, known, accel, gyroscope);
     if (gyroscope) rate_bias = rate_bias_of(epochs, known, *solution.motion);

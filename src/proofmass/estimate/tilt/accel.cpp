@@ -51,7 +51,11 @@ double correlation_time(const std::vector<Mat<3>>& departures, double step_s, do
 // by twice the variance: the correlation time of a first-order process whose density is as large.
 // It is the one that counts where vibration dominates the variance, and the autocorrelation falls
 // to 1/e within a sample.
-double time_of_density(std::vector<Mat<3>> sums, double step_s, double longest_s) {
+// `bias_m2ps4`: variance that the gyroscope's bias contributes, which hardly changes in a mean.
+double time_of_density(std::vector<Mat<3>> sums,
+                       double step_s,
+                       double longest_s,
+                       double bias_m2ps4) {
   constexpr std::size_t fewest = 8;
   const auto size = static_cast<double>(sums.size());
   double variance = 0.0, time_s = 0.0;
@@ -61,7 +65,8 @@ double time_of_density(std::vector<Mat<3>> sums, double step_s, double longest_s
     if (span * step_s > longest_s) break;
     double squares = 0.0;
     for (const Mat<3>& sum : sums) squares += sum.squaredNorm() / static_cast<double>(sums.size());
-    time_s = std::max(time_s, 0.5 * step_s * squares / (span * variance));
+    const double density = squares / span - span * bias_m2ps4;
+    time_s = std::max(time_s, 0.5 * step_s * density / variance);
     for (std::size_t k = 0; 2 * k + 1 < sums.size(); ++k) sums[k] = sums[2 * k] + sums[2 * k + 1];
     sums.resize(sums.size() / 2);
   }
@@ -74,6 +79,28 @@ double largest_eigenvalue(const Mat<3, 3>& S) {
   if (!(size > 0.0)) return 0.0;
   const Mat<3, 3> once = S / size, twice = once * once, four = twice * twice;
   return size * std::pow(four.squaredNorm(), 0.125);
+}
+
+// The running mean m, to which departures are relative.
+struct RunningMean {
+  double memory_s;
+  bool gyroscope = false;
+  Mat<3> rate_bias_radps = Mat<3>::Zero();
+  double bias_m2ps4 = 0.0;  ///< variance of departures by the uncertainty of that bias, all axes
+};
+
+RunningMean running_mean(const TiltEpochs& epochs,
+                         const std::optional<RateBias>& rate_bias,
+                         double gravity_mps2) {
+  constexpr double free_s = 20.0, unknown_bias_s = 2.0, known_bias_s = 10.0;
+  if (epochs.rate_radps.empty()) return {.memory_s = free_s};
+  if (!rate_bias) return {.memory_s = unknown_bias_s, .gyroscope = true};
+  // Gravity, rotated for as long as m remembers, along the two axes across it.
+  const double departs_mps2 = gravity_mps2 * rate_bias->tilting_std_radps * known_bias_s;
+  return {.memory_s = known_bias_s,
+          .gyroscope = true,
+          .rate_bias_radps = rate_bias->mean_radps,
+          .bias_m2ps4 = 2.0 * square(departs_mps2)};
 }
 
 // What the epochs in motion show.
@@ -101,13 +128,13 @@ class MotionEvidence {
     return found_ > plainly_more * explained_ ? std::sqrt((found_ - explained_) / (2.0 * epochs_))
                                               : 0.0;
   }
-  [[nodiscard]] double time_s(bool gyroscope, double mean_memory_s) const {
+  [[nodiscard]] double time_s(const RunningMean& mean) const {
     const double step_s = median(steps_s_).value_or(0.01);
-    const double longest_s = std::max(usual_longest_s, longest_of_memory * mean_memory_s);
+    const double longest_s = std::max(usual_longest_s, longest_of_memory * mean.memory_s);
     const double correlated_s =
         std::max(correlation_time(departures_, step_s, longest_s), 0.5 * step_s);
-    return gyroscope ? std::max(correlated_s, time_of_density(departures_, step_s, longest_s))
-                     : correlated_s;
+    if (!mean.gyroscope) return correlated_s;
+    return std::max(correlated_s, time_of_density(departures_, step_s, longest_s, mean.bias_m2ps4));
   }
   [[nodiscard]] double reading_std_mps2() const {
     return std::numbers::sqrt2 / 2.0 * robust_std(differences_).value_or(0.0);
@@ -121,21 +148,20 @@ class MotionEvidence {
 };
 
 // The rotation of an epoch's step without the gyroscope's bias; zero without gyroscope.
-Mat<3> rate_of(const TiltEpochs& epochs, const Mat<3>& rate_bias, std::size_t k) {
-  return epochs.rate_radps.empty() ? Mat<3>::Zero() : Mat<3>(epochs.rate_radps[k] - rate_bias);
+Mat<3> rate_of(const TiltEpochs& epochs, const RunningMean& mean, std::size_t k) {
+  return mean.gyroscope ? Mat<3>(epochs.rate_radps[k] - mean.rate_bias_radps) : Mat<3>::Zero();
 }
 
 // The scatter of the first seconds, which applies from the start on.
 BaseScatter first_scatter(const TiltEpochs& epochs,
-                          const Mat<3>& rate_bias,
+                          const RunningMean& mean,
                           double gravity_mps2,
-                          double memory_s,
-                          double mean_memory_s) {
-  BaseScatter scatter(memory_s, mean_memory_s, !epochs.rate_radps.empty());
+                          double memory_s) {
+  BaseScatter scatter(memory_s, mean.memory_s, mean.gyroscope);
   double early_s = 0.0;
   for (std::size_t k = 0; k < epochs.step_s.size() && early_s < memory_s; ++k) {
     early_s += epochs.step_s[k];
-    scatter.turn(epochs.step_s[k], rate_of(epochs, rate_bias, k));
+    scatter.turn(epochs.step_s[k], rate_of(epochs, mean, k));
     const Mat<3>& f = epochs.force_mps2[k];
     if (f.allFinite()) scatter.add(f, gravity_mps2);
   }
@@ -144,19 +170,17 @@ BaseScatter first_scatter(const TiltEpochs& epochs,
 }
 
 BaseAccel base_accel_over(const TiltEpochs& epochs,
-                          const Mat<3>& rate_bias,
+                          const RunningMean& mean,
                           const TiltKnown& known,
-                          double memory_s,
-                          double mean_memory_s) {
-  const bool gyroscope = !epochs.rate_radps.empty();
+                          double memory_s) {
   const double G = known.gravity_mps2;
   const Mat<3, 3> least = square(least_accel * G) * Mat<3, 3>::Identity();
-  BaseScatter scatter = first_scatter(epochs, rate_bias, G, memory_s, mean_memory_s);
+  BaseScatter scatter = first_scatter(epochs, mean, G, memory_s);
   MotionEvidence motion;
   Mat<3, 3> back = Mat<3, 3>::Identity();
   BaseAccel out;
   for (std::size_t k = 0; k < epochs.step_s.size(); ++k) {
-    const Mat<3> rate = rate_of(epochs, rate_bias, k);
+    const Mat<3> rate = rate_of(epochs, mean, k);
     if (rate.allFinite()) back = back * rotation_by(Mat<3>(-epochs.step_s[k] * rate)).transpose();
     scatter.turn(epochs.step_s[k], rate);
     const bool rests = epochs.resting[k] != 0;
@@ -166,21 +190,16 @@ BaseAccel base_accel_over(const TiltEpochs& epochs,
       if (!rests) motion.add(k, f, departure, back);
       motion.set_last(f);
     }
-    if (!gyroscope && !rests) motion.add(scatter.across(G, known.norm_std_mps2));
+    if (!mean.gyroscope && !rests) motion.add(scatter.across(G, known.norm_std_mps2));
     out.cov_m2ps4.push_back(scatter.covariance(G, known.norm_std_mps2) + least);
   }
   out.perhaps_rotation_mps2 = motion.perhaps_rotation_mps2();
-  out.time_s = motion.time_s(gyroscope, mean_memory_s);
+  out.time_s = motion.time_s(mean);
   out.reading_std_mps2 = std::max(1e-4 * G, motion.reading_std_mps2());
   return out;
 }
 
 }  // namespace
-
-double mean_memory_s(double tilting_std_radps, double gravity_mps2) {
-  constexpr double shortest_s = 2.0, longest_s = 10.0, rotated_mps2 = 0.1;
-  return std::clamp(rotated_mps2 / (gravity_mps2 * tilting_std_radps), shortest_s, longest_s);
-}
 
 void BaseScatter::turn(double step_s, const Mat<3>& rate_radps) {
   since_s_ += step_s;
@@ -234,19 +253,18 @@ BaseScatter::Across BaseScatter::across(double gravity_mps2, double norm_std_mps
 }
 
 BaseAccel base_accel(const TiltEpochs& epochs,
-                     const Mat<3>& rate_bias,
-                     const TiltKnown& known,
-                     double mean_memory_s) {
-  const BaseAccel first = base_accel_over(epochs, rate_bias, known, least_memory_s, mean_memory_s);
+                     const std::optional<RateBias>& rate_bias,
+                     const TiltKnown& known) {
+  const RunningMean mean = running_mean(epochs, rate_bias, known.gravity_mps2);
+  const BaseAccel first = base_accel_over(epochs, mean, known, least_memory_s);
   const double memory_s = std::clamp(memory_times * first.time_s, least_memory_s, most_memory_s);
-  BaseAccel out = base_accel_over(epochs, rate_bias, known, memory_s, mean_memory_s);
+  BaseAccel out = base_accel_over(epochs, mean, known, memory_s);
   // The running mean has removed part of the slow component: M/(M + τ) is left.
-  const double taken = 1.0 + out.time_s / mean_memory_s;
+  const double taken = 1.0 + out.time_s / mean.memory_s;
   out.time_s *= taken;
   // A scatter over so few correlation times follows Student's t; with gyroscope the largest
   // eigenvalue in all directions is wide enough.
-  const double wider =
-      epochs.rate_radps.empty() ? student_t_quantile(0.975, effective_dof) / 1.959964 : 1.0;
+  const double wider = mean.gyroscope ? 1.0 : student_t_quantile(0.975, effective_dof) / 1.959964;
   for (Mat<3, 3>& cov : out.cov_m2ps4) cov *= wider * wider * taken;
   return out;
 }

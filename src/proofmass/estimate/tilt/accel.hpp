@@ -8,10 +8,12 @@
 // Acceleration of the base, from the scatter of the force.
 namespace proofmass::estimate {
 
-/// Averaging time of m below with gyroscope, 2 to 10 s: the longer, the slower the accelerations
-/// that are seen; but the uncertainty of the gyroscope's bias may rotate gravity by 0.1 m/s² in it
-/// at most. `tilting_std_radps`: of the bias across gravity, each axis.
-[[nodiscard]] double mean_memory_s(double tilting_std_radps, double gravity_mps2);
+/// Of the gyroscope.
+struct RateBias {
+  Mat<3> mean_radps = Mat<3>::Zero();
+  /// Standard deviation of the rotation of gravity in sensor axes that it leaves, each axis.
+  double tilting_std_radps = 0.0;
+};
 
 /// m and ⟨…⟩ below, epoch by epoch.
 class BaseScatter {
@@ -79,7 +81,9 @@ struct BaseAccel {
 ///     m' = exp(−[ω Δ]×) m + (1 − e^(−Δ/T)) (f − m),   D = ⟨d dᵀ⟩,   v = ⟨(|f| − G)²⟩
 ///
 /// over M = 60 correlation times, 2 to 20 s; the part of slow departures removed by the mean is
-/// added back.
+/// added back. T is 20 s without gyroscope, and with it 10 s, or 2 s while its bias is unknown: an
+/// uncertain bias, too, makes the force depart from m, and this part of the low-frequency density
+/// is subtracted.
 ///
 /// - With gyroscope the covariance is max(v, λ_max(D)) in every direction.
 /// - Without gyroscope a departure may be a rotation as well as an acceleration. A horizontal
@@ -90,8 +94,7 @@ struct BaseAccel {
 /// This is a heuristic, not a likelihood: in one-step prediction a smooth acceleration resembles a
 /// slow one, and maximum likelihood would make it so slow that it absorbs gravity.
 [[nodiscard]] BaseAccel base_accel(const TiltEpochs& epochs,
-                                   const Mat<3>& rate_bias,
-                                   const TiltKnown& known,
-                                   double mean_memory_s);
+                                   const std::optional<RateBias>& rate_bias,
+                                   const TiltKnown& known);
 
 }  // namespace proofmass::estimate

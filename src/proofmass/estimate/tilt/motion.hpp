@@ -1,7 +1,5 @@
 #pragma once
 
-#include <limits>
-
 #include "proofmass/estimate/tilt/accel.hpp"
 #include "proofmass/estimate/tilt/model.hpp"
 
@@ -28,12 +26,6 @@ inline constexpr double usual_rate_noise_radps_rthz = 1e-3;
                                          const TiltKnown& known,
                                          const BaseAccel& accel,
                                          bool gyroscope);
-
-struct RateBias {
-  Mat<3> mean_radps = Mat<3>::Zero();
-  /// Standard deviation of the rotation of gravity in sensor axes that it leaves, each axis.
-  double tilting_std_radps = std::numeric_limits<double>::infinity();
-};
 
 /// The gyroscope's bias in the middle of the recording, given all of it.
 [[nodiscard]] RateBias rate_bias_of(const TiltEpochs& epochs,
