@@ -54,7 +54,7 @@ Result<TiltSolution> estimate_tilt(const TiltRecord& all, const TiltOptions& giv
   if (solution.moving) {
     drop_slow_motion(record, found);
     if (has_rates(record)) leave_out_rotations(record, options, found);
-    leave_out_hidden_onsets(record, found);
+    leave_out_hidden_onsets(record, options, found);
   }
   if (!solution.moving && found.rests.empty()) {
     found.rests.push_back({0, solution.samples - 1});

@@ -151,6 +151,13 @@ double usual_rate_hz(const std::vector<double>& time_s) {
   return step > 0.0 ? 1.0 / step : 0.0;
 }
 
+// Samples.
+std::size_t shortest_rest(const TiltOptions& options, double rate_hz) {
+  constexpr double usual_s = 0.5;
+  return std::max<std::size_t>(
+      2, static_cast<std::size_t>(options.shortest_rest_s.value_or(usual_s) * rate_hz));
+}
+
 // The same on any axis.
 bool level_creeps(const TiltRecord& record,
                   const signal::RestSearch& found,
@@ -255,18 +262,16 @@ void drop_slow_motion(const TiltRecord& record, signal::RestSearch& found) {
 void leave_out_rotations(const TiltRecord& record,
                          const TiltOptions& options,
                          signal::RestSearch& found) {
-  constexpr double block_s = 0.1, usual_shortest_s = 0.5;
+  constexpr double block_s = 0.1;
   const double rate_hz = usual_rate_hz(record.time_s);
   const auto block = static_cast<std::size_t>(std::max(1.0, std::round(block_s * rate_hz)));
-  const auto shortest =
-      static_cast<std::size_t>(options.shortest_rest_s.value_or(usual_shortest_s) * rate_hz);
+  const std::size_t shortest = shortest_rest(options, rate_hz);
   std::vector<signal::Rest> kept;
   for (const signal::Rest& rest : found.rests) {
     const std::vector<bool> turning = turning_blocks(record, rest, block);
     std::size_t first = rest.first;
     const auto keep_until = [&](std::size_t end) {
-      if (end > first && end - first >= std::max<std::size_t>(shortest, 2))
-        kept.push_back({first, end - 1});
+      if (end > first && end - first >= shortest) kept.push_back({first, end - 1});
     };
     for (std::size_t b = 0; b < turning.size(); ++b) {
       if (!turning[b]) continue;
@@ -278,14 +283,20 @@ void leave_out_rotations(const TiltRecord& record,
   found.rests = std::move(kept);
 }
 
-void leave_out_hidden_onsets(const TiltRecord& record, signal::RestSearch& found) {
+void leave_out_hidden_onsets(const TiltRecord& record,
+                             const TiltOptions& options,
+                             signal::RestSearch& found) {
   constexpr double hidden_s = 0.4;
-  const auto hidden = static_cast<std::size_t>(hidden_s * usual_rate_hz(record.time_s));
-  for (signal::Rest& rest : found.rests) {
+  const double rate_hz = usual_rate_hz(record.time_s);
+  const auto hidden = static_cast<std::size_t>(hidden_s * rate_hz);
+  const std::size_t shortest = shortest_rest(options, rate_hz);
+  std::erase_if(found.rests, [&](signal::Rest& rest) {
+    const bool begins = rest.first == 0, ends = rest.last + 1 == record.time_s.size();
     const std::size_t most = std::min(hidden, (rest.last - rest.first + 1) / 4);
-    if (rest.first > 0) rest.first += most;
-    if (rest.last + 1 < record.time_s.size()) rest.last -= most;
-  }
+    if (!begins) rest.first += most;
+    if (!ends) rest.last -= most;
+    return !begins && !ends && rest.last - rest.first + 1 < shortest;
+  });
 }
 
 }  // namespace proofmass::estimate

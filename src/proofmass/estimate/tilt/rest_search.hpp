@@ -24,7 +24,11 @@ void leave_out_rotations(const TiltRecord& record,
                          signal::RestSearch& found);
 
 /// For a moving base: next to motion a rest loses 0.4 s, or a quarter, in which a slow onset is
-/// hidden in the noise. Angles there would be stated to be those of the rest, to its accuracy.
-void leave_out_hidden_onsets(const TiltRecord& record, signal::RestSearch& found);
+/// hidden in the noise. Angles there would be stated to be those of the rest, to its accuracy. An
+/// interval between motions of which less than the shortest rest then remains is none: a slow
+/// acceleration may be constant for so long.
+void leave_out_hidden_onsets(const TiltRecord& record,
+                             const TiltOptions& options,
+                             signal::RestSearch& found);
 
 }  // namespace proofmass::estimate
