@@ -44,14 +44,24 @@ double GyroJerk::add(double speed_radps) {
 }
 
 void mark_jerks(WheelReadings& readings) {
+  const double rate_hz = readings.rate_hz();
+  if (!(rate_hz > 0.0)) return;
   for (std::size_t s = 0; s < readings.sensors.size(); ++s) {
     const PlanarReadings& sensor = readings.sensors[s];
-    if (sensor.speed_radps.empty() || !(readings.rate_hz() > 0.0)) continue;
-    GyroJerk jerk(readings.rate_hz(), sensor.speed_scatter2);
-    for (WheelEpoch& epoch : readings.epochs)
-      if (epoch.row[s] != WheelEpoch::no_row)
-        epoch.jerk_psd = std::max(
-            epoch.jerk_psd, jerk.add(sensor.speed_radps[static_cast<std::size_t>(epoch.row[s])]));
+    if (sensor.speed_radps.empty()) continue;
+    GyroJerk jerk(rate_hz, sensor.speed_scatter2);
+    constexpr double gap_steps = 2.5;
+    double last_s = readings.time_s.empty() ? 0.0 : readings.time_s.front();
+    for (std::size_t k = 0; k < readings.epochs.size(); ++k) {
+      WheelEpoch& epoch = readings.epochs[k];
+      if (epoch.row[s] == WheelEpoch::no_row) continue;
+      // Across a gap the speed changes by more than jerk between samples.
+      if ((readings.time_s[k] - last_s) * rate_hz > gap_steps)
+        static_cast<void>(jerk.add(no_value));
+      last_s = readings.time_s[k];
+      epoch.jerk_psd = std::max(
+          epoch.jerk_psd, jerk.add(sensor.speed_radps[static_cast<std::size_t>(epoch.row[s])]));
+    }
   }
 }
 
