@@ -162,6 +162,19 @@ TEST(LiveWheel, FollowsAWheelThatStartsFromRest) {
               0.05);
 }
 
+// Gravity adds to a centripetal force of 1.5 g once a turn, beyond a range of 2 g.
+TEST(LiveWheel, AnAccelerometerIsNotUsedAtTheEndOfItsRange) {
+  const Drive drive{{0.4, 0.0}, {{5.0, 0.0}, {4.0, 12.0}, {15.0, 12.0}}};
+  Stream stream = one_sensor(drive, 200.0);
+  for (auto& axis : stream.channels)
+    for (double& force : axis) force = std::clamp(force, -19.6, 19.6);
+  const Followed one = follow(stream, options_for(1, std::nullopt));
+  EXPECT_TRUE(one.fed.says("at the limit of its range"));
+  EXPECT_GT(coverage(one, drive, 13.0), 0.93);
+  EXPECT_NEAR((one["angle"].back() - one["angle"].front()) / rad_per_turn, drive.turns(0.0, 24.0),
+              0.05);
+}
+
 /// A wheelchair's wheel that is pushed, on a floor that shakes it.
 Stream pushed_with_gyroscope() {
   Mount mount;

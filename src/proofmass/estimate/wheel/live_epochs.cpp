@@ -55,6 +55,9 @@ LiveEpochs::LiveEpochs(std::vector<LiveVector> vectors, const LiveClock& clock)
   PM_EXPECTS(clock.most_rate_hz > 0.0 && clock.rate_hz >= 0.0);
   if (clock_.rate_hz > 0.0) each_ = samples_of_mean(clock_);
   for (Mat<3>& vector : epoch_.vectors) vector.setConstant(std::nan(""));
+  constexpr double least_radps = 1.0, least_mps2 = 1.4 * standard_gravity_mps2;
+  for (std::size_t i = 0; i < vectors_.size(); ++i)
+    for (Range& range : ranges_[i]) range.set_least(vectors_[i].is_rate ? least_radps : least_mps2);
 }
 
 Status LiveEpochs::check(const Block& samples) const {
@@ -139,19 +142,31 @@ void LiveEpochs::sum_up(const Block& samples, std::size_t row, double time_s) {
 }
 
 const char* LiveEpochs::why_not(std::size_t vector, const Axis& value) {
-  if (!vectors_[vector].is_rate) return why_unbelievable(value);
-  if (!std::ranges::all_of(value, [](double x) { return std::isfinite(x); }))
-    return "not a finite number";
+  const bool is_rate = vectors_[vector].is_rate;
+  const char* why = is_rate ? nullptr : why_unbelievable(value);
+  if (is_rate && !std::ranges::all_of(value, [](double x) { return std::isfinite(x); }))
+    why = "not a finite number";
+  if (why != nullptr) return why;
   bool at_end = false;
   for (std::size_t axis = 0; axis < 3; ++axis) at_end |= ranges_[vector][axis].ends_at(value[axis]);
   return at_end ? "at the limit of its range" : nullptr;
 }
 
-bool LiveEpochs::Range::ends_at(double rate_radps) {
-  equal_ = rate_radps == last_radps_ ? equal_ + 1 : 0;
-  last_radps_ = rate_radps;
-  most_radps_ = std::max(most_radps_, std::abs(rate_radps));
-  return equal_ >= 2 && std::abs(rate_radps) == most_radps_;
+bool LiveEpochs::Range::ends_at(double value) {
+  constexpr std::size_t fewest = 3, most_counted = 16;  // as signal::range_ends()
+  if (value == last_) {
+    ++equal_;
+  } else {
+    const double outwards = value < 0.0 ? -1.0 : 1.0;
+    equal_ = 1;
+    slope_ = std::min(outwards * (value - last_), outwards * (last_ - before_));
+    if (!std::isnan(last_)) step_ = std::min(step_, std::abs(value - last_));
+  }
+  before_ = last_;
+  last_ = value;
+  most_ = std::max(most_, std::abs(value));
+  return equal_ >= fewest && std::abs(value) == most_ &&
+         slope_ * static_cast<double>(std::min(equal_, most_counted)) > 7.96 * step_;
 }
 
 bool LiveEpochs::close() {

@@ -67,14 +67,20 @@ class LiveEpochs {
     Mat<3> total = Mat<3>::Zero();
     double count = 0.0;
   };
-  /// Whether a gyroscope's axis is at the end of its range: three equal measurements, none larger.
+  /// Whether an axis is at the end of its range: three equal measurements and more, none larger so
+  /// far, reached more steeply than a crest in quantisation steps would be.
   class Range {
    public:
-    bool ends_at(double rate_radps);
+    bool ends_at(double value);
+    /// Smaller magnitudes are not at the end.
+    void set_least(double magnitude) { most_ = magnitude; }
 
    private:
-    double most_radps_ = 1.0, last_radps_ = 0.0;
-    int equal_ = 0;
+    double most_ = 0.0;
+    double last_ = std::numeric_limits<double>::quiet_NaN(), before_ = last_;
+    double slope_ = 0.0;  ///< at which the last value was reached
+    double step_ = std::numeric_limits<double>::infinity();  ///< the smallest
+    std::size_t equal_ = 1;
   };
   struct Rejected {
     std::size_t count = 0;
