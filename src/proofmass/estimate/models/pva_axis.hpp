@@ -46,6 +46,8 @@ struct PvaSample {
   bool resting = false;  ///< during the step, and at the sample
   bool arrives = false;  ///< at a rest, from motion
   bool jumps = false;    ///< c jumps during the step
+  /// Density of the jerk in addition to q: where measurements of all sensors are missing.
+  double missing_jerk_m2ps5 = 0.0;
   double velocity_std_mps = std::numeric_limits<double>::quiet_NaN();  ///< of the measurement v = 0
   double position_m = std::numeric_limits<double>::quiet_NaN();
   double position_variance = 0.0, position_after_s = 0.0;  ///< the position then
@@ -93,7 +95,7 @@ class PvaAxis {
       step.Q(pva::velocity_mps, pva::velocity_mps) =
           noise.rest_speed_std_mps * noise.rest_speed_std_mps;
     } else {
-      move(h, step);
+      move(h, noise.jerk_psd_m2ps5 + samples_[k].missing_jerk_m2ps5, step);
     }
     if (samples_[k].jumps) step.Q(common, common) += noise.jump_m2ps4;
     for (int i = 0; i < static_cast<int>(sensors_.size()); ++i) {
@@ -153,16 +155,15 @@ class PvaAxis {
   }
 
  private:
-  void move(double h, Transition<states, states>& step) const {
-    const LinearModel<3, 1> motion = pva_model({h, noise.jerk_psd_m2ps5, 1.0});
+  void move(double h, double jerk_psd_m2ps5, Transition<states, states>& step) const {
+    const LinearModel<3, 1> motion = pva_model({h, jerk_psd_m2ps5, 1.0});
     const double L = noise.lean_m2ps3;
     step.F.template topLeftCorner<3, 3>() = motion.F;
     if (h > longest_step_s) {
       step.Q.template topLeftCorner<3, 3>() = motion.Q;
     } else {
       const Mat<3> straight(h * h / 6.0, h / 2.0, 1.0);
-      step.Q.template topLeftCorner<3, 3>() =
-          noise.jerk_psd_m2ps5 * h * straight * straight.transpose();
+      step.Q.template topLeftCorner<3, 3>() = jerk_psd_m2ps5 * h * straight * straight.transpose();
     }
     step.Q(0, 0) += L * h * h * h / 3.0;
     step.Q(0, 1) += L * h * h / 2.0;

@@ -175,6 +175,39 @@ std::vector<PvaSample> samples_of(const PvaTask& task, View<double> accel) {
   return samples;
 }
 
+// The task's further sensors.
+Status add_beside(const PvaTask& task, const std::array<double, 3>& axis, AxisInputs& sensors) {
+  const std::size_t beside = task.sensor.beside.size();
+  if (beside == 0 || beside >= most_fused_sensors)
+    return Error{Errc::invalid_argument, std::to_string(beside + 1) + " accelerometers; 2 to " +
+                                             std::to_string(most_fused_sensors) + " are fused"};
+  for (const ParallelAccelerometer& other : task.sensor.beside) {
+    auto one = beside_along(task, other, axis);
+    if (!one) return one.error();
+    const Status parallel = check_parallel(sensors.all.front(), *one, other, axis, sensors.samples);
+    if (!parallel) return parallel.error();
+    sensors.all.push_back(std::move(one).value());
+  }
+  return Done{};
+}
+
+// Where all sensors miss, the mean acceleration has the scatter of the motion, σ: between two
+// measurements T apart a jerk of density 12 σ²/T gives it that variance.
+void add_missing_jerk(View<double> time_s, AxisInputs& sensors) {
+  const double std_mps2 = moments(sensors.all.front().accel_mps2).std();
+  const auto missing = [&](std::size_t k) {
+    return std::ranges::all_of(sensors.all,
+                               [k](const AxisInput& one) { return std::isnan(one.accel_mps2[k]); });
+  };
+  for (std::size_t k = 1; k < time_s.size(); ++k) {
+    if (!missing(k)) continue;
+    const std::size_t before = k - 1;
+    while (k + 1 < time_s.size() && missing(k)) ++k;
+    const double psd = 12.0 * square(std_mps2) / (time_s[k] - time_s[before]);
+    for (std::size_t i = before + 1; i <= k; ++i) sensors.samples[i].missing_jerk_m2ps5 = psd;
+  }
+}
+
 }  // namespace
 
 Result<AxisInputs> axis_inputs(const PvaTask& task,
@@ -183,19 +216,11 @@ Result<AxisInputs> axis_inputs(const PvaTask& task,
   AxisInputs sensors;
   sensors.all.push_back(first_along(task, options, solution));
   sensors.samples = samples_of(task, solution.series.accel_mps2);
-  if (options.model != TrackModel::fused) return sensors;
-  const std::size_t beside = task.sensor.beside.size();
-  if (beside == 0 || beside >= most_fused_sensors)
-    return Error{Errc::invalid_argument, std::to_string(beside + 1) + " accelerometers; 2 to " +
-                                             std::to_string(most_fused_sensors) + " are fused"};
-  for (const ParallelAccelerometer& other : task.sensor.beside) {
-    auto one = beside_along(task, other, solution.axis);
-    if (!one) return one.error();
-    const Status parallel =
-        check_parallel(sensors.all.front(), *one, other, solution.axis, sensors.samples);
-    if (!parallel) return parallel.error();
-    sensors.all.push_back(std::move(one).value());
+  if (options.model == TrackModel::fused) {
+    const Status added = add_beside(task, solution.axis, sensors);
+    if (!added) return added.error();
   }
+  add_missing_jerk(task.signal.time_s, sensors);
   return sensors;
 }
 

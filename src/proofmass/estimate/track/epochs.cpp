@@ -142,6 +142,7 @@ class EpochBuilder {
       const double h = epoch.dt_s = signal_.time_s[k] - signal_.time_s[k - 1 - skipped_];
       epoch.velocity_step_mps = 0.5 * h * (a0 + a1);
       epoch.position_step_m = h * h * (a0 / 3.0 + a1 / 6.0);
+      if (skipped_ > 0 && known) bend(k, h, epoch);
       if (skipped_ > 0 || !known || h > signal_.longest_step_s) {
         epoch.unknown_accel_std_mps2 = signal_.missing_std_mps2;
         knot();
@@ -154,6 +155,33 @@ class EpochBuilder {
     for (std::size_t i = k - skipped; i < k; ++i) out_.of_sample[i] = out_.epochs.size() - 1;
     if (skipped > 0) out_.gaps.push_back({k - skipped, k - 1, signal_.missing_std_mps2});
     if (epoch.unknown_accel_std_mps2 > 0.0) knot();
+  }
+
+  // Adds what a cubic with the slopes on both sides of a gap, which ends at k, encloses beyond the
+  // straight line: at the limit of a range it is all on one side. Not if that is more than the
+  // measurements at the ends: such a gap is longer than the motion is smooth.
+  void bend(std::size_t k, double step_s, InertialEpoch& epoch) const {
+    const std::size_t most = std::max<std::size_t>(3, skipped_ / 2), last = k - 1 - skipped_;
+    if (last + 1 < most || k + most > signal_.time_s.size()) return;
+    const double before = slope(last + 1 - most, most), after = slope(k, most);
+    const double excess = step_s * (before - after) / 8.0;  // in the middle
+    const double ends =
+        std::min(std::abs(signal_.accel_mps2[last]), std::abs(signal_.accel_mps2[k]));
+    if (!(std::abs(excess) < ends)) return;
+    epoch.velocity_step_mps += square(step_s) * (before - after) / 12.0;
+    epoch.position_step_m += step_s * square(step_s) * (before / 20.0 - after / 30.0);
+  }
+
+  // Regression slope of consecutive measurements, NaN if one is missing.
+  [[nodiscard]] double slope(std::size_t first, std::size_t count) const {
+    const View<double> t = signal_.time_s.subspan(first, count);
+    const double middle = moments(t).mean;
+    double ta = 0.0, tt = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      ta += (t[i] - middle) * signal_.accel_mps2[first + i];
+      tt += square(t[i] - middle);
+    }
+    return ta / tt;
   }
 
   bool reading_due(std::size_t k) const {

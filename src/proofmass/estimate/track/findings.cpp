@@ -202,10 +202,9 @@ void add_findings(const TrackSignal& signal, const TrackOptions& options, TrackS
   note_scale(signal, options, solution);
   if (solution.missing > 0)
     solution.notes.push_back(
-        {Severity::warning,
-         text("%zu samples are missing: interpolated linearly, with the uncertainty "
-              "of the motion around them",
-              solution.missing)});
+        {Severity::warning, text("%zu samples are missing: interpolated, with the uncertainty "
+                                 "of the motion around them",
+                                 solution.missing)});
   if (solution.travel_share < 0.8 && !solution.axis_given)
     solution.notes.push_back(
         {Severity::warning, text("only %.0f %% of the motion is along one axis: the displacement "
