@@ -44,6 +44,25 @@ class Track(CommandTest):
         lower, upper = smoother["interval_95_m"]
         self.assertAlmostEqual(0.5 * (lower + upper), smoother["displacement_m"])
 
+    def test_accelerations_beyond_the_range_are_not_taken_as_measured(self):
+        rows = [line.split(",") for line in strokes_csv().splitlines()]
+        for row in rows[1:]:
+            row[1] = f"{max(-1.8, min(1.8, float(row[1]))):.7f}"
+        self.write("a.csv", "\n".join(",".join(row) for row in rows) + "\n")
+        document = self.document("track", "a.csv")
+        self.assertTrue(any("limits of the range (-1.8 and 1.8 m/s^2)" in text for text in document["warnings"]))
+        self.assertEqual(len(document["strokes"]), 3)
+        for stroke in document["strokes"]:  # 0.343 ± 0.006 m as measured
+            self.assertAlmostEqual(stroke["length_m"], 0.4, delta=3 * stroke["length_std_m"])
+
+    def test_a_logger_that_repeats_its_last_row_measures_nothing(self):
+        lines = strokes_csv().splitlines()
+        at = next(k for k, line in enumerate(lines) if line.startswith("12.25"))
+        values = lines[at].split(",", 1)[1]
+        lines[at + 1 :] = [line.split(",")[0] + "," + values for line in lines[at + 1 :]]
+        self.write("a.csv", "\n".join(lines) + "\n")
+        self.assertIn("repeat one value", self.run_command("track", "a.csv").stderr.decode())
+
     def test_the_simulated_slide_lies_in_the_band(self):
         self.succeed("simulate", "--procedure", "slide", "--seed", "5", "-o", "slide.csv")
         with open(self.folder / "slide.truth.csv", newline="") as file:

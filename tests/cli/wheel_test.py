@@ -23,7 +23,7 @@ class Wheel(CommandTest):
         self.assertLess(turns["std"], 0.01)
         self.assertAlmostEqual(document["methods"]["smoother"]["turns"], turns["value"])
 
-    def with_gyro(self):
+    def with_gyro(self, range_mps2=100.0):
         """From rest to 60 rpm and back; the gyroscope has a 2 % scale error and a unit given only in its heading."""
         lasts, top, radius = 20.0, 2.0 * math.pi, 0.05
         rows = ["time (s)," + ",".join(f"acc_{axis} (m/s^2)" for axis in "xyz") + ","
@@ -36,6 +36,7 @@ class Wheel(CommandTest):
             noise = [0.02 * math.sin(n * k * k) for n in (7.0, 5.0, 3.0, 11.0)] # equidistributed, so nearly white
             x = 9.80665 * math.sin(angle) - speed**2 * radius + noise[0]
             y = 9.80665 * math.cos(angle) + accel * radius + noise[1]
+            x = max(x, -range_mps2)
             rows.append(f"{t:.3f},{x:.6f},{y:.6f},{noise[2]:.6f},0.01,-0.02,{1.02 * math.degrees(speed) + 20.0 * noise[3]:.5f}")
         self.write("gyro.csv", "\n".join(rows) + "\n")
 
@@ -48,6 +49,15 @@ class Wheel(CommandTest):
         self.assertLess(scale["std"], 0.02)
         self.assertAlmostEqual(bias["value"], 0.0, delta=3.0 * bias["std"])
         self.assertEqual((bias["unit"], scale["unit"]), ("rad/s", "1"))
+
+    def test_accelerations_beyond_the_range_are_not_taken_as_measured(self):
+        self.with_gyro(range_mps2=10.5)
+        document = self.document("wheel", "gyro.csv", "--spin-axis", "z")
+        self.assertTrue(any("limits of the range (-10.5 m/s^2)" in text for text in document["warnings"]))
+        radius = document["sensors"][0]["radius_m"]  # 48.4 ± 2.1 mm as measured
+        self.assertAlmostEqual(radius["value"], 0.05, delta=2.5 * radius["std"])
+        self.assertLess(radius["std"], 5e-4)
+        self.assertAlmostEqual(abs(document["turns"]["value"]), 10.0, delta=0.01)
 
     def test_a_gyroscope_can_be_left_alone(self):
         self.with_gyro()

@@ -8,6 +8,7 @@
 #include "cli/console.hpp"
 #include "cli/exit_status.hpp"
 #include "cli/output.hpp"
+#include "input/gyroscope.hpp"
 #include "input/input.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/report/calibrate/encoder_report.hpp"
@@ -90,6 +91,8 @@ void run_calibrate_encoder(const CalibrateCommand& command) {
                              ": no time column and no --rate: give --rate HZ or --time NAME");
   const auto models = load_sensors(command.input, report.notes);
   const std::vector<Accelerometer> found = accelerometers(recordings);
+  for (const Accelerometer& one : found)
+    drop_unusable(one.triad, std::nullopt, recordings.front(), report.notes);
   calibrate(models, found, recordings);
   report.notes.insert(report.notes.end(), recording.notes.begin(), recording.notes.end());
   EncoderChannel encoder = encoder_of(recording, command.encoder, command.input, report.notes);

@@ -14,6 +14,7 @@
 #include "proofmass/report/wording.hpp"
 #include "proofmass/sensor/gyroscope_update.hpp"
 #include "proofmass/signal/channel_audit.hpp"
+#include "proofmass/signal/unusable.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -143,11 +144,12 @@ RateSession rate_session(const Recording& recording,
                          const CalibrateCommand& command,
                          std::vector<Note>& notes) {
   const bool own = !command.gyro_file.empty();
-  Recording other;
-  if (own) other = gyroscope_recording(command);
-  const Recording& rates = own ? other : recording;
+  Recording rates = own ? gyroscope_recording(command) : recording;
   if (own) expect_one_clock(rates, recording);
   const GyroscopeChannels channels = channels_in(rates, found.triad, own);
+  const std::vector<Note> saturated =
+      signal::drop_saturated({channels.begin(), channels.end()}, rates);
+  notes.insert(notes.end(), saturated.begin(), saturated.end());
   RateSession out;
   const std::array places{*found.triad.x, *found.triad.y, *found.triad.z};
   for (std::size_t k = 0; k < 3; ++k) {

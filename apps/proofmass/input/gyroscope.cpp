@@ -7,6 +7,7 @@
 #include "cli/exit_status.hpp"
 #include "proofmass/core/units.hpp"
 #include "proofmass/sensor/calibrated_rates.hpp"
+#include "proofmass/signal/unusable.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -160,6 +161,24 @@ std::array<std::vector<double>, 3> calibrated_rates_radps(
   notes.push_back({Severity::info, fmt::format("gyroscope {} etc.: calibrated by the sensor file",
                                                recording.channels[channels[0]].name)});
   return rates;
+}
+
+void drop_unusable(const Triad& accelerometer,
+                   const std::optional<GyroscopeChannels>& gyroscope,
+                   Recording& recording,
+                   std::vector<Note>& notes) {
+  std::vector<std::size_t> channels;
+  for (const auto& axis : {accelerometer.x, accelerometer.y, accelerometer.z})
+    if (axis) channels.push_back(*axis);
+  const auto keep = [&](const std::vector<Note>& found) {
+    notes.insert(notes.end(), found.begin(), found.end());
+  };
+  keep(signal::drop_stuck(channels, recording));
+  if (gyroscope) {
+    keep(signal::drop_stuck({gyroscope->begin(), gyroscope->end()}, recording));
+    channels.insert(channels.end(), gyroscope->begin(), gyroscope->end());
+  }
+  keep(signal::drop_saturated(channels, recording));
 }
 
 const sensor::SensorModel* sensor_model_of(const std::vector<sensor::SensorModel>& models,

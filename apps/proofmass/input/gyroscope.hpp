@@ -39,6 +39,13 @@ using GyroscopeChannels = std::array<std::size_t, 3>;
     const std::string& unit_if_unknown,
     std::vector<Note>& notes);
 
+/// Makes values of an accelerometer, and of the gyroscope beside it, NaN where they are stuck or at
+/// an end of the range, with warnings; before any calibration, which mixes the axes.
+void drop_unusable(const Triad& accelerometer,
+                   const std::optional<GyroscopeChannels>& gyroscope,
+                   Recording& recording,
+                   std::vector<Note>& notes);
+
 /// The model of accelerometer `at` of --sensor: one for all or one for each; nullptr without.
 [[nodiscard]] const sensor::SensorModel* sensor_model_of(
     const std::vector<sensor::SensorModel>& models, std::size_t at);

@@ -147,6 +147,11 @@ WheelInput wheel_input(const std::vector<std::string>& files,
   std::vector<Recording> recordings = load_timed(files, flags, output);
   const auto models = load_sensors(flags, input.notes);
   const std::vector<Accelerometer> found = one_or_two_accelerometers(recordings);
+  for (const Accelerometer& one : found) {
+    Recording& recording = recordings[one.recording];
+    drop_unusable(one.triad, gyroscope.wanted ? find_gyroscope(recording, one.triad) : std::nullopt,
+                  recording, recording.notes);
+  }
   calibrate(models, found, recordings);
   remove_warm_up(flags, models, found, recordings, input.notes);
   keep_notes(recordings, input.notes);

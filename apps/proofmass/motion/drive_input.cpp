@@ -108,6 +108,9 @@ estimate::WheelSensor inertial_sensor(std::vector<Recording>& one,
   if (found.size() > 1)
     throw Failure(usage, fmt::format("{}: {} accelerometers, expected one: choose with --channel",
                                      one.front().source, found.size()));
+  const Triad& triad = found.front().triad;
+  drop_unusable(triad, gyroscope.wanted ? find_gyroscope(one.front(), triad) : std::nullopt,
+                one.front(), one.front().notes);
   calibrate(models, found, one);
   return wheel_sensor(one.front(), found.front(), begin_s, gyroscope, sensor_model_of(models, 0),
                       notes);

@@ -9,6 +9,7 @@
 #include "cli/exit_status.hpp"
 #include "cli/flags.hpp"
 #include "cli/output.hpp"
+#include "input/gyroscope.hpp"
 #include "input/input.hpp"
 #include "proofmass/report/motor/report.hpp"
 #include "verb.hpp"
@@ -96,6 +97,8 @@ void add_accelerometers(const MotorCommand& command,
   std::vector<Recording> recordings{recording};
   const auto models = load_sensors(command.input, notes);
   const std::vector<Accelerometer> found = accelerometers(recordings);
+  for (const Accelerometer& one : found)
+    drop_unusable(one.triad, std::nullopt, recordings.front(), notes);
   calibrate(models, found, recordings);
   for (const Accelerometer& one : found) {
     auto& sensor = record.accel_mps2.emplace_back();

@@ -217,6 +217,7 @@ estimate::TiltRecord prepare(const TiltCommand& command,
   Recording& recording = recordings.front();
   const auto models = load_sensors(command.input, notes);
   const Accelerometer one = only_accelerometer(recordings);
+  drop_unusable(one.triad, gyroscope_of(command, recording, one.triad), recording, recording.notes);
   const std::array axes{one.triad.x, one.triad.y, one.triad.z};
   std::array<RawSteps, 3> raw;
   for (std::size_t i = 0; i < 3; ++i)

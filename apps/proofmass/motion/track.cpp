@@ -268,6 +268,9 @@ TrackSensor prepare(const TrackCommand& command, TrackOptions& options, std::vec
                   command.file + ": no time column and no --rate: give --rate HZ or --time NAME");
   const auto models = load_sensors(command.input, notes);
   const std::vector<Accelerometer> found = chosen_accelerometers(command, recordings);
+  for (const Accelerometer& one : found)
+    drop_unusable(one.triad, command.no_gyro ? std::nullopt : find_gyroscope(recording, one.triad),
+                  recording, recording.notes);
   calibrate(models, found, recordings);
   remove_warm_up(command.input, models, found, recordings, notes);
   notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());

@@ -9,6 +9,7 @@
 #include "cli/output.hpp"
 #include "input/input.hpp"
 #include "proofmass/report/rotation_report.hpp"
+#include "proofmass/signal/unusable.hpp"
 #include "tumble/modes.hpp"
 
 namespace proofmass::app {
@@ -64,6 +65,14 @@ std::vector<std::size_t> plane_channels(const Recording& recording, const Tumble
   std::vector<std::size_t> chosen;
   for (const std::size_t at : calibrate::axes_in_plane(readings)) chosen.push_back(channels[at]);
   return chosen;
+}
+
+void drop_saturated(const TumbleCommand& command, std::vector<Recording>& recordings) {
+  for (Recording& recording : recordings) {
+    const std::vector<Note> found =
+        signal::drop_saturated(plane_channels(recording, command), recording);
+    recording.notes.insert(recording.notes.end(), found.begin(), found.end());
+  }
 }
 
 void bring_to_si(Channel& channel) {
@@ -149,6 +158,7 @@ void run_rotation(const TumbleCommand& command) {
   report::RotationReport report;
   report.inputs = command.files;
   std::vector<Recording> recordings = load_recordings(command);
+  drop_saturated(command, recordings);
   const auto models = load_sensors(command.input, report.notes);
   if (!models.empty()) {
     const std::vector<Accelerometer> found = accelerometers(recordings);

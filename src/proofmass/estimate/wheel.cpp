@@ -124,16 +124,9 @@ void add_methods(const WheelReadings& readings, const WheelFit& fit, WheelSoluti
 
 void note_gyroscope(const PlanarReadings& readings, WheelSensorFit& fit, WheelSolution& solution) {
   fit.has_gyro = !readings.speed_radps.empty();
-  const std::size_t saturated = readings.saturated_speeds;
-  if (saturated == 0) return;
-  solution.notes.push_back(
-      {Severity::warning,
-       fit.name + (fit.has_gyro
-                       ? ": " + std::to_string(saturated) +
-                             " measurements of the gyroscope are at the limit of its range, and "
-                             "are not used"
-                       : ": the gyroscope's output is constant, and is not "
-                         "used")});
+  if (readings.constant_gyroscope)
+    solution.notes.push_back(
+        {Severity::warning, fit.name + ": the gyroscope's output is constant, and is not used"});
 }
 
 void add_sensor(const WheelSensor& sensor,
@@ -310,9 +303,31 @@ double noise_mps2(const WheelReadings& readings, std::size_t sensor) {
   return std::sqrt(*quantile(variance, 0.05));
 }
 
+/// Of the first sensor, with its unusable rows.
+struct RecordedSpan {
+  double begin_s, end_s;
+};
+
+/// Turns before the first usable measurement and after the last are not counted.
+void note_ends(const RecordedSpan& recorded, WheelSolution& solution) {
+  constexpr double least_s = 0.1;
+  const std::vector<double>& time_s = solution.series.time_s;
+  const auto note = [&](const char* which, double missing_s, const char* counted, double from_s) {
+    if (missing_s < least_s) return;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "the %s %.1f s have no usable measurements: turns and angles count %s %.1f s",
+                  which, missing_s, counted, from_s);
+    solution.notes.push_back({Severity::warning, text});
+  };
+  note("first", time_s.front() - recorded.begin_s, "from", time_s.front());
+  note("last", recorded.end_s - time_s.back(), "until", time_s.back());
+}
+
 Result<WheelSolution> conclude(const WheelReadings& readings,
                                WheelFit fit,
                                const WheelOptions& options,
+                               const RecordedSpan& recorded,
                                WheelSolution solution) {
   describe_sensors(fit, readings.phase_rad, solution.sensors);
   for (std::size_t s = 0; s < solution.sensors.size(); ++s)
@@ -346,6 +361,7 @@ Result<WheelSolution> conclude(const WheelReadings& readings,
   note_travel(readings, fit, solution);
   if (const Status radius = check_radius(fit, options, solution); !radius) return radius.error();
   judge_turns(fit, doubtful, solution);
+  note_ends(recorded, solution);
   return solution;
 }
 
@@ -356,16 +372,18 @@ Result<WheelSolution> estimate_wheel(std::vector<WheelSensor> sensors,
   if (const Status status = check(sensors, options); !status) return status.error();
   auto pair = fit_singles(sensors, options);
   if (!pair) return pair.error();
+  const RecordedSpan recorded{sensors.front().time_s.front(), sensors.front().time_s.back()};
   WheelSolution solution;
   if (const auto& along = pair->singles[0].encoder) add_encoder(*along, solution);
   for (std::size_t s = 0; s < sensors.size(); ++s)
     add_sensor(sensors[s], pair->singles[s], options.spin_axis.has_value(), solution);
   if (sensors.size() == 1)
-    return conclude(pair->singles[0].readings, pair->singles[0].fit, options, std::move(solution));
+    return conclude(pair->singles[0].readings, pair->singles[0].fit, options, recorded,
+                    std::move(solution));
   if (pair->clocks.offset_s.value != 0.0)
     solution.sensors[1].clock_offset_s = pair->clocks.offset_s;
   Joint joint = fit_jointly(std::move(sensors), std::move(pair).value(), options);
-  return conclude(joint.readings, std::move(joint.fit), options, std::move(solution));
+  return conclude(joint.readings, std::move(joint.fit), options, recorded, std::move(solution));
 }
 
 }  // namespace proofmass::estimate

@@ -98,4 +98,25 @@ RestSearch find_rests(View<View<double>> axes, const RestOptions& options) {
   return search;
 }
 
+std::vector<Rest> stuck_intervals(View<View<double>> axes, const RestOptions& options) {
+  RestBlocks blocks = blocks_of(axes, rest_lengths(options).window);
+  const std::vector<RestRun> constant = constant_runs(blocks);
+  if (constant.empty()) return {};
+  drop_runs(constant, blocks);
+  // A sensor without noise is constant at rest.
+  const std::optional<RestNoise> noise = find_rest_noise(blocks);
+  if (!noise || noise->unrest >= 1.0 || !exceeds_quantum(blocks, *noise)) return {};
+  const auto is_repeated = [&](std::size_t k) {
+    return std::ranges::all_of(axes, [k](View<double> axis) { return axis[k] == axis[k - 1]; });
+  };
+  std::vector<Rest> stuck;
+  for (const RestRun& run : constant) {
+    Rest all{blocks.first_sample(run.first), blocks.end_sample(run.end - 1) - 1};
+    while (all.first > 0 && is_repeated(all.first)) --all.first;
+    while (all.last + 1 < blocks.samples && is_repeated(all.last + 1)) ++all.last;
+    stuck.push_back(all);
+  }
+  return stuck;
+}
+
 }  // namespace proofmass::signal

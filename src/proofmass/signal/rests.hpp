@@ -55,4 +55,11 @@ struct RestSearch {
 /// sample.
 [[nodiscard]] RestSearch find_rests(View<View<double>> axes, const RestOptions& options);
 
+/// Intervals of half a second and more in which no axis changes, although the sensor has noise
+/// beyond its quantisation step where it rests otherwise: it was stuck, or its logger repeated the
+/// last sample.
+/// Expects what find_rests() does.
+[[nodiscard]] std::vector<Rest> stuck_intervals(View<View<double>> axes,
+                                                const RestOptions& options);
+
 }  // namespace proofmass::signal

@@ -9,7 +9,6 @@
 #include "proofmass/calibrate/multi_position/norm_model.hpp"
 #include "proofmass/core/so3.hpp"
 #include "proofmass/core/statistics.hpp"
-#include "proofmass/signal/range_end.hpp"
 #include "proofmass/signal/rounding.hpp"
 
 namespace proofmass::calibrate {
@@ -134,7 +133,8 @@ std::string take_samples(const GyroscopeSession& session,
   const std::size_t first = session.rests[from].last, last = session.rests[from + 1].first;
   for (std::size_t n = first; n <= last; ++n) {
     const Vector3d reading = at(session.rate, n), accel = at(session.accel, n);
-    if (!reading.allFinite() || !accel.allFinite()) return "samples are missing";
+    if (!reading.allFinite() || !accel.allFinite())
+      return "samples are missing, or at the limit of the range";
     out.reading.push_back(reading);
     out.force.push_back(force_of(p, accel));
     if (n == first) continue;
@@ -168,7 +168,6 @@ void add_motions(const GyroscopeSession& session,
                  GyroscopeData& data) {
   const double step_s = usual_step_s(session.time_s);
   const std::size_t base = data.rests.size() - session.rests.size();
-  const std::vector<bool> at_its_end = signal::saturated_rows(session.rate);
   for (std::size_t k = 0; k + 1 < session.rests.size(); ++k) {
     MotionResidual& listed = data.residuals.emplace_back();
     listed.session = index;
@@ -177,10 +176,6 @@ void add_motions(const GyroscopeSession& session,
     listed.end_s = session.time_s[session.rests[k + 1].first];
     GyroscopeMotion motion{.samples = {}, .from = base + k, .to = base + k + 1, .noise_axes = {}};
     listed.why_unused = take_samples(session, accelerometer, k, step_s, motion.samples);
-    const auto from = at_its_end.begin() + static_cast<std::ptrdiff_t>(session.rests[k].last);
-    const auto to = at_its_end.begin() + static_cast<std::ptrdiff_t>(session.rests[k + 1].first);
-    if (std::find(from, to, true) != to)
-      listed.why_unused = "the gyroscope is at the end of its range";
     listed.used = listed.why_unused.empty();
     if (!listed.used) continue;
     subtract_rests(data.rests[motion.from], data.rests[motion.to], motion.samples);

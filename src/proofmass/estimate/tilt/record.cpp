@@ -7,7 +7,6 @@
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/plane.hpp"
-#include "proofmass/signal/range_end.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -81,24 +80,13 @@ std::optional<TiltRecord> without_unusable(const TiltRecord& record, std::vector
   const std::size_t count = forces + count_beyond(beyond_belief_radps, record.rate_radps);
   // A majority means a wrong unit.
   const bool most = 2 * forces > record.accel_mps2[0].size();
-  const std::vector<bool> saturated =
-      has_rates(record) ? signal::saturated_rows(record.rate_radps) : std::vector<bool>{};
-  const auto rows = std::ranges::count(saturated, true);
-  if ((count == 0 || most) && rows == 0) return std::nullopt;
+  if (count == 0 || most) return std::nullopt;
   TiltRecord out = record;
-  if (count > 0 && !most) {
-    drop_beyond(beyond_belief_mps2, out.accel_mps2);
-    drop_beyond(beyond_belief_radps, out.rate_radps);
-    notes.push_back({Severity::warning, std::to_string(count) +
-                                            (count == 1 ? " reading is" : " readings are") +
-                                            " beyond 1000 g or 10000 rad/s and not used"});
-  }
-  if (rows > 0) {
-    signal::drop_rows(saturated, out.rate_radps);
-    notes.push_back({Severity::warning, std::to_string(rows) +
-                                            " rows have an angular rate at the limit of the "
-                                            "gyroscope's range, which is not used"});
-  }
+  drop_beyond(beyond_belief_mps2, out.accel_mps2);
+  drop_beyond(beyond_belief_radps, out.rate_radps);
+  notes.push_back({Severity::warning, std::to_string(count) +
+                                          (count == 1 ? " reading is" : " readings are") +
+                                          " beyond 1000 g or 10000 rad/s and not used"});
   return out;
 }
 

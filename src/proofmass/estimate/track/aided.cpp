@@ -9,7 +9,6 @@
 #include "proofmass/estimate/track/findings.hpp"
 #include "proofmass/estimate/track/motion.hpp"
 #include "proofmass/signal/channel_audit.hpp"
-#include "proofmass/signal/range_end.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -70,38 +69,27 @@ void fill(const Attitude& attitude,
   }
 }
 
-struct UsableSeries {
-  InertialSeries series;
-  std::size_t saturated = 0;  ///< rows
-};
-
-// Measurements that no sensor gives, such as 3e34, and rates at the end of the gyroscope's range
-// are missing.
-UsableSeries usable_series(const TrackSensor& sensor) {
+// Measurements that no sensor gives, such as 3e34, are missing.
+InertialSeries usable_series(const TrackSensor& sensor) {
   InertialSeries series{sensor.time_s, sensor.rate_radps, sensor.accel_mps2};
   for (auto* sensors : {&series.rate_radps, &series.accel_mps2})
     for (auto& axis : *sensors)
       for (double& value : axis) value = signal::plausible_or_nan(value);
-  const std::size_t saturated =
-      signal::drop_rows(signal::saturated_rows(series.rate_radps), series.rate_radps);
-  return {std::move(series), saturated};
+  return series;
 }
 
 // Outside of a stretch the attitude is NaN.
-Result<Attitude> undivided_attitude(const UsableSeries& usable,
+Result<Attitude> undivided_attitude(const InertialSeries& usable,
                                     const std::vector<signal::Rest>& rests,
                                     const AttitudeOptions& how) {
-  auto found = estimate_attitude(usable.series, rests, how);
+  auto found = estimate_attitude(usable, rests, how);
   if (!found) return found.error();
   const auto& stretches = found->stretches;
   if (stretches.size() != 1 || stretches.front().first != 0 ||
-      stretches.front().last + 1 != usable.series.time_s.size())
+      stretches.front().last + 1 != usable.time_s.size())
     return Error{Errc::not_observable,
-                 std::string(usable.saturated > 0 ? "a gap, or a rotation beyond the gyroscope's "
-                                                    "range, of more than a second"
-                                                  : "a gap of more than a second") +
-                     " parts the recording, and with it the attitude: analyse one part, or omit "
-                     "the gyroscope",
+                 "a gap, or a rotation beyond the gyroscope's range, of more than a second parts "
+                 "the recording, and with it the attitude: analyse one part, or omit the gyroscope",
                  {Advice{"from"}, Advice{"to"}, Advice{"no-gyro"}}};
   return found;
 }
@@ -111,7 +99,7 @@ Result<Attitude> undivided_attitude(const UsableSeries& usable,
 Result<TrackSignal> world_signal(const TrackSensor& sensor,
                                  const TrackSignal& signal,
                                  const TrackOptions& options) {
-  const UsableSeries usable = usable_series(sensor);
+  const InertialSeries usable = usable_series(sensor);
   AttitudeOptions how;
   how.gravity_mps2 = options.gravity_mps2;
   how.progress = options.progress;
@@ -119,7 +107,7 @@ Result<TrackSignal> world_signal(const TrackSensor& sensor,
       undivided_attitude(usable, {signal.stops.rests.front(), signal.stops.rests.back()}, how);
   if (!found) return found.error();
   TrackSignal world = signal;
-  const auto accel = gravity_free_acceleration(usable.series, *found);
+  const auto accel = gravity_free_acceleration(usable, *found);
   world.accel_mps2.assign(accel.begin(), accel.end());
   world.axes = {0, 1, 2};
   world.reference_mps2.assign(3, 0.0);
@@ -133,7 +121,7 @@ Result<bool> track_aided(const TrackSensor& sensor,
                          const TrackReadings& readings,
                          const TrackOptions& options,
                          TrackSolution& solution) {
-  const UsableSeries usable = usable_series(sensor);
+  const InertialSeries usable = usable_series(sensor);
   AttitudeOptions how;
   how.gravity_mps2 = options.gravity_mps2;
   how.progress = options.progress;
@@ -142,7 +130,7 @@ Result<bool> track_aided(const TrackSensor& sensor,
   const FoundAxis axis = axis_of(*found, sensor.time_s, options);
   if (!readings.fixes.empty()) {
     how.positions = readings_along(axis.direction, readings);
-    found = estimate_attitude(usable.series, signal.stops.rests, how);
+    found = estimate_attitude(usable, signal.stops.rests, how);
     if (!found) return found.error();
   }
   const Attitude& attitude = *found;
@@ -150,13 +138,8 @@ Result<bool> track_aided(const TrackSensor& sensor,
   solution.axis_in_world = true;
   solution.travel_share = axis.share;
   solution.scale_std = scale_std(signal, options, solution);
-  fill(attitude, gravity_free_acceleration(usable.series, attitude), solution);
+  fill(attitude, gravity_free_acceleration(usable, attitude), solution);
   solution.notes.insert(solution.notes.end(), attitude.notes.begin(), attitude.notes.end());
-  if (usable.saturated > 0)
-    solution.notes.push_back(
-        {Severity::warning, std::to_string(usable.saturated) +
-                                " rows have an angular rate at the limit of the gyroscope's range, "
-                                "and are bridged: record with a wider range, or move more slowly"});
   std::size_t unused = 0;
   std::erase_if(solution.rests, [&](const signal::Rest& rest) {
     const bool drop =

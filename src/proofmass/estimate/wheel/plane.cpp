@@ -7,7 +7,6 @@
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/fit.hpp"
-#include "proofmass/signal/range_end.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -280,29 +279,23 @@ void add_speeds(const WheelSensor& sensor,
   const std::size_t size = sensor.time_s.size();
   for (auto* rates : {&readings.speed_radps, &readings.rate_u_radps, &readings.rate_v_radps})
     rates->assign(size, std::numeric_limits<double>::quiet_NaN());
-  std::array<std::vector<bool>, 3> at_its_end;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (std::abs(plane.axis[axis]) > 0.05)
-      at_its_end[axis] = signal::at_range_end(sensor.rate_radps[axis]);
   std::vector<double> seconds;  // differences
+  Moments speeds;
   for (std::size_t row = 0; row < size; ++row) {
     const Axis rate{sensor.rate_radps[0][row], sensor.rate_radps[1][row],
                     sensor.rate_radps[2][row]};
     const double speed = dot(rate, plane.axis);
     if (!screened.usable[row] || !(std::abs(speed) < beyond_belief_radps)) continue;
-    if (std::ranges::any_of(at_its_end,
-                            [&](const auto& end) { return !end.empty() && end[row]; })) {
-      ++readings.saturated_speeds;
-      continue;
-    }
     readings.speed_radps[row] = speed;
+    speeds.add(speed);
     readings.rate_u_radps[row] = dot(rate, plane.u);
     readings.rate_v_radps[row] = dot(rate, plane.v);
     if (row >= 2)
       seconds.push_back(speed - 2.0 * readings.speed_radps[row - 1] +
                         readings.speed_radps[row - 2]);
   }
-  if (std::ranges::all_of(readings.speed_radps, [](double speed) { return std::isnan(speed); })) {
+  readings.constant_gyroscope = speeds.count > 0 && speeds.min == speeds.max;
+  if (speeds.count == 0 || readings.constant_gyroscope) {
     for (auto* rates : {&readings.speed_radps, &readings.rate_u_radps, &readings.rate_v_radps})
       rates->clear();
     return;

@@ -33,7 +33,7 @@ struct PlanarReadings {
   std::vector<double> rate_u_radps{}, rate_v_radps{};
   RateLeak leak_u{}, leak_v{};
   double axle_slope = 0.0;  ///< tangent of the axle's inclination as the accelerometer shows it
-  std::size_t saturated_speeds = 0;
+  bool constant_gyroscope = false;  ///< its output does not change: not used
 
   [[nodiscard]] bool has(std::size_t row) const {
     return !std::isnan(u_mps2[row]) && !std::isnan(v_mps2[row]);

@@ -183,7 +183,7 @@ void RunningChannel::take_odd(double value, Place place) {
     denormal_.add(place);
 }
 
-ChannelAudit RunningChannel::finish(const Channel& channel) {
+ChannelAudit RunningChannel::finish(const Channel& channel, Limits limits) {
   runs_.end_run();
   ChannelAudit out;
   out.name = channel.name;
@@ -197,25 +197,25 @@ ChannelAudit RunningChannel::finish(const Channel& channel) {
   out.longest_stuck_start_s = runs_.longest_start().s;
   const View<double> sample = sample_.values();
   out.lsb = find_lsb_of_plausible({sample.begin(), sample.end()});
-  judge_range(out);
+  judge_range(out, limits);
   return out;
 }
 
-void RunningChannel::judge_range(ChannelAudit& audit) const {
+void RunningChannel::judge_range(ChannelAudit& audit, Limits limits) const {
   const double range = moments_.max - moments_.min;
   if (!has_range(audit.unit.quantity) || !(range > 0.0)) return;
   // With only a few levels, the outermost are not rails but the ends of the noise.
   constexpr double fewest_levels = 32.0;
   if (audit.lsb && range < fewest_levels * *audit.lsb) return;
   judge_rails(audit);
-  if (audit.clipping == Clipping::none) judge_crests(audit, excerpts_);
+  if (limits == Limits::all && audit.clipping == Clipping::none) judge_crests(audit, excerpts_);
 }
 
 void RunningChannel::judge_rails(ChannelAudit& audit) const {
   const double nearby = (moments_.max - moments_.min) / 50.0;
-  const std::size_t above = count_clipped(runs_.high(), runs_.longest_but_high(),
+  const std::size_t above = count_clipped(runs_.high(), runs_.longest_elsewhere(),
                                           highest_.beside(nearby, sample_), audit.lsb);
-  const std::size_t below = count_clipped(runs_.low(), runs_.longest_but_low(),
+  const std::size_t below = count_clipped(runs_.low(), runs_.longest_elsewhere(),
                                           lowest_.beside(nearby, sample_), audit.lsb);
   if (above + below == 0) return;
   if (audit.lsb && holds_other_values(excerpts_.values(), moments_.min, moments_.max, *audit.lsb))

@@ -37,8 +37,10 @@ class RunningChannel {
   /// Adds the same values to the tails. Shares no data with add(), so that both can run at once.
   void add_to_tails(View<double> values);
 
-  /// Call once. `channel` gives the name and the unit.
-  [[nodiscard]] ChannelAudit finish(const Channel& channel);
+  /// Call once. `channel` gives the name and the unit. Rails are found at once; the search for
+  /// limits that are no single value takes longest.
+  enum class Limits { rails, all };
+  [[nodiscard]] ChannelAudit finish(const Channel& channel, Limits limits = Limits::all);
 
   [[nodiscard]] const OddValues& nan() const { return nan_; }
   [[nodiscard]] const OddValues& infinite() const { return infinite_; }
@@ -49,7 +51,7 @@ class RunningChannel {
   void add_plausible(View<double> values, const ChunkStatistics& figures);
   void add_odd(View<double> values, const SampleTimes& times);
   void take_odd(double value, Place place);
-  void judge_range(ChannelAudit& audit) const;
+  void judge_range(ChannelAudit& audit, Limits limits) const;
   void judge_rails(ChannelAudit& audit) const;
 
   Moments moments_;

@@ -52,13 +52,8 @@ class StuckValues {
 
   [[nodiscard]] const RailRuns& low() const { return low_; }
   [[nodiscard]] const RailRuns& high() const { return high_; }
-  /// The longest run at any value except the lowest.
-  [[nodiscard]] std::size_t longest_but_low() const {
-    return high_.rail == low_.rail ? elsewhere_ : std::max(elsewhere_, high_.longest);
-  }
-  [[nodiscard]] std::size_t longest_but_high() const {
-    return high_.rail == low_.rail ? elsewhere_ : std::max(elsewhere_, low_.longest);
-  }
+  /// The longest run at any value except the lowest and the highest.
+  [[nodiscard]] std::size_t longest_elsewhere() const { return elsewhere_; }
   [[nodiscard]] std::size_t longest() const { return longest_; }
   [[nodiscard]] Place longest_start() const { return longest_start_; }
 

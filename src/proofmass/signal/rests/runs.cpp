@@ -160,12 +160,16 @@ void clean_outliers(View<View<double>> axes, RestBlocks& blocks, const RestNoise
   }
 }
 
-void drop_stuck(RestBlocks& blocks, const RestNoise& noise) {
+bool exceeds_quantum(const RestBlocks& blocks, const RestNoise& noise) {
   bool noisy = false;
   for (std::size_t a = 0; a < blocks.axes; ++a)
     noisy = noisy || noise.window_variance[a] > std::max(blocks.quantum[a] * blocks.quantum[a],
                                                          4.0 * blocks.variance_floor[a]);
-  if (!noisy) return;
+  return noisy;
+}
+
+std::vector<RestRun> constant_runs(const RestBlocks& blocks) {
+  std::vector<RestRun> runs;
   const auto is_constant = [&](std::size_t k) {
     for (std::size_t a = 0; a < blocks.axes; ++a)
       if (blocks.squares[a][k] > 0.0) return false;
@@ -177,10 +181,19 @@ void drop_stuck(RestBlocks& blocks, const RestNoise& noise) {
       ++run;
       continue;
     }
-    if (run >= blocks.window)
-      for (std::size_t b = k - run; b < k; ++b) blocks.count[b] = 0.0;
+    if (run >= blocks.window) runs.push_back({k - run, k});
     run = 0;
   }
+  return runs;
+}
+
+void drop_runs(const std::vector<RestRun>& runs, RestBlocks& blocks) {
+  for (const RestRun& run : runs)
+    for (std::size_t b = run.first; b < run.end; ++b) blocks.count[b] = 0.0;
+}
+
+void drop_stuck(RestBlocks& blocks, const RestNoise& noise) {
+  if (exceeds_quantum(blocks, noise)) drop_runs(constant_runs(blocks), blocks);
 }
 
 std::vector<RestRun> quiet_runs(const RestBlocks& blocks, const RestNoise& noise) {

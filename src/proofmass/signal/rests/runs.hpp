@@ -29,6 +29,16 @@ struct QuietTest {
 /// Removes one outlier from each block that is quiet without it.
 void clean_outliers(View<View<double>> axes, RestBlocks& blocks, const RestNoise& noise);
 
+/// Windows that repeat one value.
+[[nodiscard]] std::vector<RestRun> constant_runs(const RestBlocks& blocks);
+
+/// True if the noise exceeds the quantisation step on any axis: a sensor of such noise repeats no
+/// value for a window.
+[[nodiscard]] bool exceeds_quantum(const RestBlocks& blocks, const RestNoise& noise);
+
+/// Excludes the blocks of these runs.
+void drop_runs(const std::vector<RestRun>& runs, RestBlocks& blocks);
+
 /// Excludes windows that repeat one value although the sensor's noise exceeds the quantisation
 /// step.
 void drop_stuck(RestBlocks& blocks, const RestNoise& noise);

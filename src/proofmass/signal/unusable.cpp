@@ -1,0 +1,210 @@
+#include "proofmass/signal/unusable.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <utility>
+
+#include "proofmass/core/statistics.hpp"
+#include "proofmass/signal/audit/running_channel.hpp"
+#include "proofmass/signal/audit/stuck_values.hpp"
+#include "proofmass/signal/channel_audit.hpp"
+#include "proofmass/signal/rests.hpp"
+
+namespace proofmass::signal {
+namespace {
+
+struct Run {
+  std::size_t first = 0, end = 0;
+  [[nodiscard]] std::size_t size() const { return end - first; }
+};
+
+std::vector<Run> runs_at(View<double> series, double value) {
+  std::vector<Run> runs;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    Run run{k, k};
+    while (run.end < series.size() && series[run.end] == value) ++run.end;
+    if (run.size() >= RailRuns::shortest_run) runs.push_back(run);
+    k = std::max(k, run.end);
+  }
+  return runs;
+}
+
+// Whether a quarter of the runs' sides, two at least, are too steep for a crest in quantisation
+// steps: that is flat for a run of L only if the next step is below 8 / L of them. L counts up to
+// 16, since beyond that a motion may end softly at rest.
+bool are_too_steep(View<double> series, const std::vector<Run>& runs, double value, double lsb) {
+  constexpr std::size_t longest = 16;
+  std::size_t steep = 0, sides = 0;
+  const auto add = [&](const Run& run, double nearer, double farther) {
+    const double towards = nearer < value ? 1.0 : -1.0;
+    const double step = std::min(towards * (value - nearer), towards * (nearer - farther));
+    ++sides;
+    if (step * static_cast<double>(std::min(run.size(), longest)) > 7.96 * lsb) ++steep;
+  };
+  for (const Run& run : runs) {
+    if (run.first >= 2) add(run, series[run.first - 1], series[run.first - 2]);
+    if (run.end + 1 < series.size()) add(run, series[run.end], series[run.end + 1]);
+  }
+  return steep >= 2 && 4 * steep >= sides;
+}
+
+// An axis whose changes show that the body moves.
+class Witness {
+ public:
+  explicit Witness(View<double> series) : series_(series) {
+    std::vector<double> bends;  // of which even a fast motion has few
+    for (std::size_t k = 2; k < series.size(); ++k)
+      bends.push_back(series[k] - 2.0 * series[k - 1] + series[k - 2]);
+    std::erase_if(bends, [](double bend) { return !std::isfinite(bend); });
+    constexpr double steps = 3.0, noises = 8.0;
+    const double noise = robust_std(bends).value_or(0.0) / std::sqrt(6.0);
+    still_ = steps * find_lsb(series).value_or(0.0) + noises * noise;
+  }
+  [[nodiscard]] bool moves(const Run& run) const {
+    Moments values;
+    for (std::size_t k = run.first; k < run.end; ++k)
+      if (is_plausible(series_[k])) values.add(series_[k]);
+    return values.count > 1 && values.max - values.min > still_;
+  }
+
+ private:
+  View<double> series_;
+  double still_ = 0.0;
+};
+
+bool most_move(const std::vector<Run>& runs, const std::vector<Witness>& witnesses) {
+  std::size_t moving = 0, all = 0;
+  for (const Run& run : runs) {
+    all += run.size();
+    if (std::ranges::any_of(witnesses, [&](const Witness& one) { return one.moves(run); }))
+      moving += run.size();
+  }
+  return 2 * moving > all;
+}
+
+// Whether the values change from sample to sample but in these runs, which are long, and not where
+// the axis is for most of the time.
+bool stand_out(View<double> series, const std::vector<Run>& runs, double low, double high) {
+  constexpr std::size_t shortest = 8, times_as_long = 4;
+  std::size_t at_ends = 0, run = 0, longest = 0, in_runs = 0, in_long = 0;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const bool at_end = series[k] == low || series[k] == high;
+    at_ends += at_end ? 1 : 0;
+    run = at_end ? 0 : (k > 0 && series[k] == series[k - 1] ? run + 1 : 1);
+    longest = std::max(longest, run);
+  }
+  for (const Run& one : runs) {
+    in_runs += one.size();
+    if (one.size() >= std::max(shortest, times_as_long * longest)) in_long += one.size();
+  }
+  return 2 * at_ends < series.size() && 2 * in_long > in_runs;
+}
+
+ChannelAudit rails_of(const Channel& axis) {
+  RunningChannel running(Subsample::usual_capacity);
+  const View<double> values = axis.values;
+  for (std::size_t from = 0; from < values.size(); from += ValueExcerpts::piece) {
+    const View<double> piece =
+        values.subspan(from, std::min(ValueExcerpts::piece, values.size() - from));
+    running.add(piece, SampleTimes{.first = from, .stamps_s = {}});
+    running.add_to_tails(piece);
+  }
+  Unit of_a_sensor = axis.unit;
+  of_a_sensor.quantity = Quantity::counts;
+  return running.finish({axis.name, of_a_sensor, {}}, RunningChannel::Limits::rails);
+}
+
+// Rails but the level at rest.
+RangeEnds far_rails(const ChannelAudit& found, View<double> series) {
+  RangeEnds ends{found.limit_low, found.limit_high};
+  if (!ends.reached()) return ends;
+  constexpr double of_magnitude = 0.5, of_range = 0.2;
+  std::vector<double> plausible(series.begin(), series.end());
+  std::erase_if(plausible, [](double value) { return !is_plausible(value); });
+  const double middle = *median(std::move(plausible));
+  const Moments& all = found.moments;
+  const double largest = std::max(std::abs(all.min), std::abs(all.max));
+  for (std::optional<double>* end : {&ends.low, &ends.high})
+    if (*end && std::abs(**end) < of_magnitude * largest &&
+        std::abs(**end - middle) < of_range * (all.max - all.min))
+      end->reset();
+  return ends;
+}
+
+std::string in_words(const RangeEnds& ends, const Unit& unit) {
+  std::string values;
+  for (const std::optional<double>& end : {ends.low, ends.high})
+    if (end) values += fmt::format("{}{:.5g}", values.empty() ? "" : " and ", *end);
+  return values + (unit.symbol.empty() ? "" : " " + unit.symbol);
+}
+
+}  // namespace
+
+RangeEnds range_ends(const Channel& axis, const std::vector<View<double>>& others) {
+  const View<double> series = axis.values;
+  const ChannelAudit found = rails_of(axis);
+  RangeEnds ends = far_rails(found, series);
+  const double low = found.moments.min, high = found.moments.max;
+  if (!(low < high)) return ends;
+  std::vector<Witness> witnesses;
+  for (const auto& [value, end] : {std::pair{low, &ends.low}, {high, &ends.high}}) {
+    if (*end) continue;
+    const std::vector<Run> runs = runs_at(series, value);
+    if (!are_too_steep(series, runs, value, found.lsb.value_or(0.0))) continue;
+    if (witnesses.empty())
+      for (const View<double> other : others) witnesses.emplace_back(other);
+    if (most_move(runs, witnesses) || stand_out(series, runs, low, high)) *end = value;
+  }
+  return ends;
+}
+
+std::vector<Note> drop_saturated(const std::vector<std::size_t>& channels, Recording& recording) {
+  std::vector<RangeEnds> ends;
+  for (const std::size_t c : channels) {
+    std::vector<View<double>> others;
+    for (const std::size_t other : channels)
+      if (other != c) others.emplace_back(recording.channels[other].values);
+    ends.push_back(range_ends(recording.channels[c], others));
+  }
+  std::vector<Note> notes;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (!ends[i].reached()) continue;
+    Channel& channel = recording.channels[channels[i]];
+    std::size_t count = 0, first = 0;
+    std::vector<double>& values = channel.values.edit();
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (values[k] != ends[i].low && values[k] != ends[i].high) continue;
+      if (count++ == 0) first = k;
+      values[k] = no_value;
+    }
+    notes.push_back({Severity::warning,
+                     fmt::format("{}: {} of {} samples are at the limits of the range ({}), from "
+                                 "{:.2f} s on, and are not used: record with a wider range",
+                                 channel.name, count, values.size(),
+                                 in_words(ends[i], channel.unit), recording.time.at(first))});
+  }
+  return notes;
+}
+
+std::vector<Note> drop_stuck(const std::vector<std::size_t>& channels, Recording& recording) {
+  std::vector<View<double>> axes;
+  for (const std::size_t c : channels) axes.emplace_back(recording.channels[c].values);
+  const std::vector<Rest> stuck = stuck_intervals(axes, {.rate_hz = recording.time.rate_hz});
+  if (stuck.empty()) return {};
+  std::size_t count = 0;
+  for (const Rest& one : stuck) count += one.last - one.first;
+  for (const std::size_t c : channels) {
+    std::vector<double>& values = recording.channels[c].values.edit();
+    for (const Rest& one : stuck)
+      std::fill(values.begin() + static_cast<std::ptrdiff_t>(one.first) + 1,
+                values.begin() + static_cast<std::ptrdiff_t>(one.last) + 1, no_value);
+  }
+  return {{Severity::warning,
+           fmt::format("{} and the sensor's other axes repeat one value in {} of {} samples, from "
+                       "{:.2f} s on, and are not used there",
+                       recording.channels[channels.front()].name, count, recording.samples(),
+                       recording.time.at(stuck.front().first))}};
+}
+
+}  // namespace proofmass::signal

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "proofmass/core/recording.hpp"
+
+// Values of a sensor that are no measurements: at an end of its range, or stuck.
+namespace proofmass::signal {
+
+/// Ends of a channel's range that the signal ran into.
+struct RangeEnds {
+  std::optional<double> low, high;  ///< in the channel's unit
+
+  [[nodiscard]] bool reached() const { return low || high; }
+};
+
+/// The lowest or highest value of a sensor's axis, if it is an end of the range:
+///
+/// - it occurs three times or more in a row, reached and left more steeply than a crest in
+///   quantisation steps would be, either while another axis moves, since a sensor at rest may stay
+///   at its extreme as well, or eight times and more on an axis whose noise changes all other
+///   values; or
+/// - audit() finds a rail there (Clipping::rail), and it is not merely the level at rest: of at
+///   least half the largest magnitude, or a fifth of the range away from the median.
+///
+/// `others`: further axes of the same rigid body, sample by sample. Units do not matter.
+[[nodiscard]] RangeEnds range_ends(const Channel& axis, const std::vector<View<double>>& others);
+
+/// Makes the values of these channels, axes of sensors on one rigid body, at an end of their range
+/// NaN, since the true ones may lie anywhere beyond it. Returns a warning for each channel that has
+/// any, with their number, the ends and the first time.
+std::vector<Note> drop_saturated(const std::vector<std::size_t>& channels, Recording& recording);
+
+/// Makes the values of these one to three channels, the axes of one sensor, NaN where they are
+/// stuck (stuck_intervals()), but for the first of them. Returns a warning if there are any.
+std::vector<Note> drop_stuck(const std::vector<std::size_t>& channels, Recording& recording);
+
+}  // namespace proofmass::signal
