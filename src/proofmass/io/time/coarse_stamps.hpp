@@ -49,7 +49,7 @@ struct BurstLine {
 
 /// The sample period from a straight line through the stamps against their sample numbers,
 /// including missing ones: by signal::StampBand, or by single intervals if `band` is 0. Returns
-/// `step` if the two differ by more than 2 %.
+/// `step` if the two differ by more than 2 %, with a band 5 %.
 [[nodiscard]] double step_by_line(View<double> stamps, double step, double band);
 
 }  // namespace proofmass::io

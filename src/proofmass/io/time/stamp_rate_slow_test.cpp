@@ -22,6 +22,8 @@ struct Kind {
   std::size_t most_lost = 1;              ///< rows of an event: 1 to this
   std::size_t shortest = 1, longest = 1;  ///< rows per packet
   double late = 0.0;                      ///< mean delay of a packet, in periods
+  double apart = 0.0;                     ///< of the rows of a packet, in periods
+  int rows = 8000;
   double tolerance = 1e-3;
   /// Rates outside their interval: 5 % of 200, plus two standard deviations.
   int most_outside = 16;
@@ -52,7 +54,7 @@ Drawn draw(const Kind& kind, unsigned seed) {
   double packet = 0.0;
   std::size_t losing = 0, lost = 0;
   std::uniform_int_distribution<std::size_t> of_event(1, kind.most_lost);
-  for (int k = 0; k < 8000; ++k) {
+  for (int k = 0; k < kind.rows; ++k) {
     double at = k + phase;
     if (kind.longest > 1) {
       if (left == 0) {
@@ -61,6 +63,7 @@ Drawn draw(const Kind& kind, unsigned seed) {
       }
       --left;
       at = packet;
+      packet += kind.apart;
     }
     at += kind.jitter * normal(random);
     if (k > 0 && losing == 0 && uniform(random) < kind.lost) losing = of_event(random);
@@ -190,7 +193,21 @@ INSTANTIATE_TEST_SUITE_P(
              .shortest = 4,
              .longest = 16,
              .late = 2.0,
-             .tolerance = 2e-3}));
+             .tolerance = 2e-3},
+        Kind{.name = "packets of 4 to 16 rows, late, a hundredth of a step apart, 1100 rows",
+             .shortest = 4,
+             .longest = 16,
+             .late = 0.5,
+             .apart = 0.01,
+             .rows = 1100,
+             .tolerance = 1e-2},
+        Kind{.name = "packets of 8 rows, a hundredth of a step apart, 1400 rows",
+             .shortest = 8,
+             .longest = 8,
+             .late = 0.4,
+             .apart = 0.01,
+             .rows = 1400,
+             .tolerance = 5e-3}));
 
 }  // namespace
 }  // namespace proofmass::io::stamp_rate_slow_test

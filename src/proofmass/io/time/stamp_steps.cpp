@@ -44,10 +44,19 @@ std::vector<double> sampled_steps(View<double> stamps) {
   return steps;
 }
 
+/// The median of the steps that are longer than half as much again as this: from one burst to the
+/// next, if rows come in bursts. 0 if there are none.
+double step_between_bursts(const std::vector<double>& steps, double per_row) {
+  std::vector<double> longer;
+  std::ranges::copy_if(steps, std::back_inserter(longer),
+                       [&](double step) { return step > 1.5 * per_row; });
+  return median(longer).value_or(0.0);
+}
+
 /// Time per row: the mean over segments of rows, without those that are outliers due to gaps; 0 if
 /// there are fewer than eight. Long segments, so that bursts average out; several, so that few
 /// contain gaps.
-double long_run_of(View<double> stamps) {
+double long_run_of(View<double> stamps, const std::vector<double>& steps) {
   const std::size_t count = stamps.size() < 1024 ? 16 : 64;
   const std::size_t rows = (stamps.size() - 1) / count;
   if (rows < 4) return 0.0;
@@ -60,8 +69,9 @@ double long_run_of(View<double> stamps) {
   }
   if (means.size() < 8) return 0.0;
   const double middle = *median(means);
-  // A segment contains whole bursts: their number alone scatters it by some per cent.
-  const double near = std::max(3.0 * *robust_std(means), 0.25 * middle);
+  // A segment contains whole bursts, one more or less than others.
+  const double burst = 1.1 * step_between_bursts(steps, middle) / static_cast<double>(rows);
+  const double near = std::max({3.0 * *robust_std(means), 0.25 * middle, burst});
   Moments usual;
   for (const double mean : means)
     if (std::abs(mean - middle) <= near) usual.add(mean);
@@ -150,12 +160,14 @@ StampSteps measure_steps(View<double> stamps) {
     if (std::abs(step - out.median) <= 1.001 * out.rounding) near.add(step);
   out.mean_near = near.count > 0 ? near.mean : out.median;
   out.single = out.rounding > 0.0 ? out.mean_near : ordinary_median(up, out.median);
-  out.long_run = long_run_of(stamps);
+  out.long_run = long_run_of(stamps, all);
   out.in_bursts = out.coarse == 0.0 && come_in_bursts(out, all);
   if (out.in_bursts) {
     out.band = band_of_bursts(stamps, out.long_run);
     if (out.band > 0.0) {
-      out.long_run = step_by_line(stamps, out.long_run, out.band);
+      // Twice, since with a step some per cent off rows may seem to be missing.
+      for (int pass = 0; pass < 2; ++pass)
+        out.long_run = step_by_line(stamps, out.long_run, out.band);
       if (const auto whole = line_without_holes(stamps, out.long_run, out.band)) {
         out.long_run = whole->step;
         out.band = whole->band;
