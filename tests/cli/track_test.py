@@ -55,6 +55,20 @@ class Track(CommandTest):
         for stroke in document["strokes"]:  # 0.343 ± 0.006 m as measured
             self.assertAlmostEqual(stroke["length_m"], 0.4, delta=3 * stroke["length_std_m"])
 
+    def test_rows_in_bursts_are_evenly_spaced(self):
+        """Stamped when a packet of eight arrives, by a computer that is late now and then."""
+        late = random.Random(2)
+        lines = strokes_csv().splitlines()
+        for first in range(1, len(lines), 8):
+            arrival = 0.01 * (first + 7) + late.expovariate(250.0)
+            for k in range(first, min(first + 8, len(lines))):
+                lines[k] = f"{arrival + 1e-4 * (k - first):.5f},{lines[k].split(',', 1)[1]}"
+        self.write("a.csv", "\n".join(lines) + "\n")
+        document = self.document("track", "a.csv")
+        self.assertEqual(len(document["strokes"]), 3)
+        for stroke in document["strokes"]:
+            self.assertAlmostEqual(stroke["length_m"], 0.4, delta=0.01)
+
     def test_a_logger_that_repeats_its_last_row_measures_nothing(self):
         lines = strokes_csv().splitlines()
         at = next(k for k, line in enumerate(lines) if line.startswith("12.25"))

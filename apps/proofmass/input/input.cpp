@@ -17,6 +17,7 @@
 #include "proofmass/sensor/calibration.hpp"
 #include "proofmass/sensor/gravity.hpp"
 #include "proofmass/sensor/warm_up.hpp"
+#include "proofmass/signal/even_grid.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -144,8 +145,12 @@ Recording load(const std::string& file, const InputFlags& flags, const Progress&
       need(io::read_recording(file, read_options(flags, progress)), Stage::reading), flags);
 }
 
+Recording load_even(const std::string& file, const InputFlags& flags, const Progress& progress) {
+  return signal::with_even_stamps(load(file, flags, progress));
+}
+
 Recording load_rising(const std::string& file, const InputFlags& flags, const Progress& progress) {
-  const Recording whole = load(file, flags, progress);
+  const Recording whole = load_even(file, flags, progress);
   Recording rising = with_rising_stamps(whole);
   const std::size_t lost = whole.samples() - rising.samples();
   if (lost > 0)

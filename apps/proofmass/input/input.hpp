@@ -16,8 +16,13 @@
 // Recordings from the input flags.
 namespace proofmass::app {
 
-/// Like load(), without samples whose time does not increase (reported in a note): for estimates of
-/// motion.
+/// Like load(), with even times where the stamps do not show single intervals
+/// (signal::with_even_stamps()): for estimates of motion.
+[[nodiscard]] Recording load_even(const std::string& file,
+                                  const InputFlags& flags,
+                                  const Progress& progress);
+
+/// Like load_even(), without samples whose time does not increase (reported in a note).
 [[nodiscard]] Recording load_rising(const std::string& file,
                                     const InputFlags& flags,
                                     const Progress& progress);

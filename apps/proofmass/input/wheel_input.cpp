@@ -108,7 +108,7 @@ std::vector<Recording> load_timed(const std::vector<std::string>& files,
                                   const OutputFlags& output) {
   std::vector<Recording> recordings;
   for (const std::string& file : files) {
-    recordings.push_back(load(file, flags, progress_bar(output)));
+    recordings.push_back(load_even(file, flags, progress_bar(output)));
     if (recordings.back().time.source == TimeSource::none)
       throw Failure(usage, file + ": no time column and no --rate: give --rate HZ or --time NAME");
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/signal/audit/chunk_statistics.hpp"
 #include "proofmass/signal/resample/hole_finder.hpp"
 
@@ -50,6 +51,29 @@ Samples on_even_grid(Samples values, const EvenGrid& grid) {
   }
   append(values.size());
   return series;
+}
+
+Recording with_even_stamps(Recording recording) {
+  TimeBase& time = recording.time;
+  if (!(time.band_s > 0.0) || time.is_uniform()) return recording;
+  const Result<EvenGrid> grid = even_grid(time, recording.samples());
+  if (!grid) return recording;
+  std::vector<double> late_s;
+  std::size_t missing = 0;
+  auto hole = grid->holes.begin();
+  for (std::size_t k = 0; k < time.stamps_s.size(); ++k) {
+    for (; hole != grid->holes.end() && hole->before == k; ++hole) missing += hole->missing;
+    const double even_s = static_cast<double>(k + missing) / time.rate_hz;
+    late_s.push_back(time.stamps_s[k] - even_s);
+    time.stamps_s[k] = even_s;
+  }
+  constexpr double ns_per_s = 1e9;
+  if (time.start_ns) *time.start_ns += std::llround(*median(std::move(late_s)) * ns_per_s);
+  time.band_s = 0.0;
+  recording.notes.push_back(
+      {Severity::info, time.channel + ": the stamps do not show single intervals: the samples are "
+                                      "taken to be evenly spaced"});
+  return recording;
 }
 
 }  // namespace proofmass::signal

@@ -44,4 +44,9 @@ struct EvenGrid {
 /// Expects grid.recorded values; without holes they are not copied.
 [[nodiscard]] Samples on_even_grid(Samples values, const EvenGrid& grid);
 
+/// Where single stamps are not conclusive (TimeBase::band_s: rows in bursts, stamps rounded to
+/// about one sample period), the same recording with the even times of its grid, missing samples
+/// counted; any other recording unchanged. The median stamp keeps its time on the file's clock.
+[[nodiscard]] Recording with_even_stamps(Recording recording);
+
 }  // namespace proofmass::signal

@@ -115,5 +115,40 @@ TEST(EvenGrid, SaysWhyItCannot) {
   EXPECT_EQ(hours.error().code, Errc::corrupt);
 }
 
+/// Packets of eight rows at 100 Hz, stamped when the last row is there; 24 rows are lost on the
+/// way.
+Recording in_packets() {
+  Recording recording;
+  std::vector<double> stamps_s;
+  for (std::size_t k = 0; k < 4000; ++k) {
+    const std::size_t number = k < 2000 ? k : k + 24;
+    stamps_s.push_back(0.01 * static_cast<double>(number - number % 8));
+  }
+  recording.time = stamped(stamps_s, 100.0);
+  recording.time.band_s = 0.08;
+  recording.time.start_ns = 1'000'000'000;
+  recording.channels.push_back({"acc_x", *parse_unit("m/s^2"), ramp(4000)});
+  return recording;
+}
+
+TEST(EvenStamps, AreThoseOfTheSamplesInPackets) {
+  const Recording even = with_even_stamps(in_packets());
+  for (std::size_t k = 0; k < 4000; ++k)
+    EXPECT_NEAR(even.time.stamps_s[k], 0.01 * static_cast<double>(k < 2000 ? k : k + 24), 1e-9)
+        << k;
+  EXPECT_EQ(even.time.band_s, 0.0);
+  EXPECT_NEAR(static_cast<double>(*even.time.start_ns), 1e9 - 35e6, 6e6);  // 3.5 rows later
+  EXPECT_EQ(even.notes.size(), 1U);
+  EXPECT_EQ(even.channels.front().values.copy(), ramp(4000));
+}
+
+TEST(EvenStamps, OfSingleIntervalsAreThemselves) {
+  Recording recording = in_packets();
+  recording.time.band_s = 0.0;
+  const Recording same = with_even_stamps(recording);
+  EXPECT_EQ(same.time.stamps_s, recording.time.stamps_s);
+  EXPECT_TRUE(same.notes.empty());
+}
+
 }  // namespace
 }  // namespace proofmass::signal::even_grid_test
