@@ -208,6 +208,16 @@ TEST(Track, TheBandHoldsTheTruthAcrossMissingReadings) {
                 5.0 * found.series.position_std_m[k] + 1e-9);
 }
 
+// As of a clock that is set forward. A constant unknown acceleration would be determined by the
+// stops, and the displacement with it (132 km off at ± 3 km).
+TEST(Track, AcrossAnHourWithoutMeasurementsThereIsNoDisplacement) {
+  CarriageRecord made = record({});
+  for (std::size_t k = 250; k < made.sensor.time_s.size(); ++k) made.sensor.time_s[k] += 3600.0;
+  const auto none = estimate_track(made.sensor, {});
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("may be any"), std::string::npos);
+}
+
 // A lift: it accelerates, moves at constant speed with vibration, and brakes. `derivative`: jerk
 // instead of acceleration.
 CarriageRecord lift(bool derivative, std::uint64_t seed = 3) {

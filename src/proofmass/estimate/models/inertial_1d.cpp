@@ -8,16 +8,15 @@ namespace {
 /// Random walk of the speed during a cruise: 1 cm/s in one second.
 constexpr double cruise_walk_m2ps3 = 1e-4;
 
-// ∫∫ of white noise N², of a random walk q of the bias, and of an unknown acceleration constant
-// over the step.
+// ∫∫ of white noise N², unknown accelerations included, and of a random walk q of the bias.
 Mat<3, 3> motion_noise(const InertialEpoch& epoch, const InertialNoise& noise) {
   const double h = epoch.dt_s, h2 = h * h, h3 = h2 * h;
-  const double N2 = noise.white_m2ps3 + noise.motion_lean_m2ps3, q = noise.motion_walk_m2ps5;
-  const double u = epoch.unknown_accel_std_mps2 * epoch.unknown_accel_std_mps2;
+  const double N2 = noise.white_m2ps3 + noise.motion_lean_m2ps3 + epoch.unknown_accel_m2ps3;
+  const double q = noise.motion_walk_m2ps5;
   Mat<3, 3> Q;
-  Q(0, 0) = N2 * h3 / 3.0 + q * h3 * h2 / 20.0 + u * h2 * h2 / 4.0;
-  Q(0, 1) = Q(1, 0) = N2 * h2 / 2.0 + q * h2 * h2 / 8.0 + u * h3 / 2.0;
-  Q(1, 1) = N2 * h + q * h3 / 3.0 + u * h2;
+  Q(0, 0) = N2 * h3 / 3.0 + q * h3 * h2 / 20.0;
+  Q(0, 1) = Q(1, 0) = N2 * h2 / 2.0 + q * h2 * h2 / 8.0;
+  Q(1, 1) = N2 * h + q * h3 / 3.0;
   Q(0, 2) = Q(2, 0) = -q * h3 / 6.0;
   Q(1, 2) = Q(2, 1) = -q * h2 / 2.0;
   Q(2, 2) = q * h;
@@ -98,12 +97,12 @@ std::vector<InertialEpoch> join_epochs(View<InertialEpoch> epochs,
       velocity += part.velocity_step_mps;
       dt_s += part.dt_s;
       whole.leaves_rest = whole.leaves_rest || part.leaves_rest;
-      unknown += part.unknown_accel_std_mps2 * part.unknown_accel_std_mps2 * part.dt_s * part.dt_s;
+      unknown += part.unknown_accel_m2ps3 * part.dt_s;
     }
     whole.dt_s = dt_s;
     whole.velocity_step_mps = velocity;
     whole.position_step_m = position;
-    whole.unknown_accel_std_mps2 = dt_s > 0.0 ? std::sqrt(unknown) / dt_s : 0.0;
+    whole.unknown_accel_m2ps3 = dt_s > 0.0 ? unknown / dt_s : 0.0;
     joined.push_back(whole);
   }
   return joined;

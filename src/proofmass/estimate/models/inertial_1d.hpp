@@ -33,7 +33,7 @@ struct InertialEpoch {
   bool leaves_rest = false, arrives_at_rest = false;
   /// Integrals of the measurements over the step, from zero velocity.
   double velocity_step_mps = 0.0, position_step_m = 0.0;
-  double unknown_accel_std_mps2 = 0.0;  ///< over the whole step, if measurements are missing
+  double unknown_accel_m2ps3 = 0.0;  ///< density, in addition, if measurements are missing
   double velocity_std_mps = std::numeric_limits<double>::quiet_NaN();  ///< of the measurement v = 0
   double level_mps2 = std::numeric_limits<double>::quiet_NaN();  ///< a at rest, mean since before
   double level_variance = 0.0;

@@ -36,7 +36,7 @@ std::vector<InertialEpoch> some_epochs() {
   }
   epochs[0].velocity_std_mps = epochs[33].velocity_std_mps = 1e-3;
   epochs[6].leaves_rest = epochs[33].arrives_at_rest = true;
-  epochs[17].unknown_accel_std_mps2 = 0.5;
+  epochs[17].unknown_accel_m2ps3 = 0.25;
   epochs[20].position_m = 0.01;
   epochs[20].position_variance = 1e-4;
   return epochs;

@@ -144,7 +144,7 @@ class EpochBuilder {
       epoch.position_step_m = h * h * (a0 / 3.0 + a1 / 6.0);
       if (skipped_ > 0 && known) bend(k, h, epoch);
       if (skipped_ > 0 || !known || h > signal_.longest_step_s) {
-        epoch.unknown_accel_std_mps2 = signal_.missing_std_mps2;
+        epoch.unknown_accel_m2ps3 = unknown_accel_m2ps3(h);
         knot();
       }
     }
@@ -153,8 +153,16 @@ class EpochBuilder {
     skipped_ = 0;
     push(k, epoch);
     for (std::size_t i = k - skipped; i < k; ++i) out_.of_sample[i] = out_.epochs.size() - 1;
-    if (skipped > 0) out_.gaps.push_back({k - skipped, k - 1, signal_.missing_std_mps2});
-    if (epoch.unknown_accel_std_mps2 > 0.0) knot();
+    if (skipped > 0)
+      out_.gaps.push_back({k - skipped, k - 1, std::sqrt(epoch.unknown_accel_m2ps3 / epoch.dt_s)});
+    if (epoch.unknown_accel_m2ps3 > 0.0) knot();
+  }
+
+  // Over longer times than `constant_s` the acceleration is white: a constant one would be
+  // determined by the next stop, together with the displacement.
+  [[nodiscard]] double unknown_accel_m2ps3(double step_s) const {
+    constexpr double constant_s = 1.0;
+    return square(signal_.missing_std_mps2) * std::min(step_s, constant_s);
   }
 
   // Adds what a cubic with the slopes on both sides of a gap, which ends at k, encloses beyond the

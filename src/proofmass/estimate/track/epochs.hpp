@@ -54,7 +54,7 @@ struct AxisEpochs {
   /// Samples without a measurement that are skipped in one step, and the epoch at which it ends.
   struct Gap {
     std::size_t first, last;
-    double unknown_accel_std_mps2;
+    double unknown_accel_std_mps2;  ///< of its mean
   };
   std::vector<Gap> gaps{};
   /// Epochs with a measurement or followed by another kind of step, and the last: the minimum that

@@ -174,6 +174,22 @@ Error hidden_motion() {
       {Advice{"still"}}};
 }
 
+std::optional<Error> endless_gap(const TrackSignal& signal) {
+  constexpr double longest_s = 60.0;
+  double last_s = signal.time_s.front();
+  for (std::size_t k = 0; k < signal.time_s.size(); ++k) {
+    if (std::isnan(signal.accel_mps2.front()[k])) continue;
+    if (signal.time_s[k] - last_s > longest_s)
+      return Error{Errc::not_observable,
+                   text("no measurements from %.1f to %.1f s: the displacement in this gap may be "
+                        "any, or the clock was set; analyse the parts before and after it",
+                        last_s, signal.time_s[k]),
+                   {Advice{"from"}, Advice{"to"}}};
+    last_s = signal.time_s[k];
+  }
+  return std::nullopt;
+}
+
 double scale_std(const TrackSignal& signal,
                  const TrackOptions& options,
                  const TrackSolution& solution) {

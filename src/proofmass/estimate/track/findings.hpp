@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "proofmass/estimate/track/signal.hpp"
 
 // Notes on a track for the user.
@@ -10,6 +12,9 @@ namespace proofmass::estimate {
 
 /// Why the assumed rests may be motion.
 [[nodiscard]] Error hidden_motion();
+
+/// If there is a gap of more than a minute: the displacement across it may be any.
+[[nodiscard]] std::optional<Error> endless_gap(const TrackSignal& signal);
 
 /// Relative uncertainty of the measurements' scale along the solution's axis: as given; else 1 %,
 /// but along gravity its departure at rest from the expected value, at least 0.3 %.

@@ -165,14 +165,14 @@ std::vector<signal::Rest> quiet_rests(const TrackSignal& signal) {
 
 namespace {
 
-// Range of the velocity integrated from a rest's measurements minus their mean.
+// Range of the velocity integrated from a rest's measurements minus their mean, gaps left out.
 double velocity_range(const TrackSignal& signal, View<double> accel, const signal::Rest& rest) {
   const double mean = moments(accel.subspan(rest.first, rest.last - rest.first + 1)).mean;
   double v = 0.0;
   Moments velocity;
   velocity.add(v);
   for (std::size_t k = rest.first + 1; k <= rest.last; ++k) {
-    if (!std::isnan(accel[k])) v += (accel[k] - mean) * (signal.time_s[k] - signal.time_s[k - 1]);
+    if (!std::isnan(accel[k])) v += (accel[k] - mean) / signal.rate_hz;
     velocity.add(v);
   }
   return velocity.max - velocity.min;
@@ -181,16 +181,16 @@ double velocity_range(const TrackSignal& signal, View<double> accel, const signa
 }  // namespace
 
 bool may_hide_motion(const TrackSignal& signal) {
-  double resting_s = 0.0;
-  for (const signal::Rest& rest : signal.stops.rests)
-    resting_s += signal.time_s[rest.last] - signal.time_s[rest.first];
-  if (resting_s < 0.8 * (signal.time_s.back() - signal.time_s.front())) return false;
+  std::size_t resting = 0;
+  for (const signal::Rest& rest : signal.stops.rests) resting += rest.last - rest.first;
+  if (static_cast<double>(resting) < 0.8 * static_cast<double>(signal.time_s.size() - 1))
+    return false;
   constexpr double far_beyond = 8.0;
   return std::any_of(signal.accel_mps2.begin(), signal.accel_mps2.end(), [&](const auto& axis) {
     const LevelNoise noise = level_noise(axis, signal.stops.rests, signal.rate_hz);
     return std::any_of(
         signal.stops.rests.begin(), signal.stops.rests.end(), [&](const signal::Rest& rest) {
-          const double length_s = signal.time_s[rest.last] - signal.time_s[rest.first];
+          const double length_s = static_cast<double>(rest.last - rest.first) / signal.rate_hz;
           // White noise integrates to σ √(T/rate); its range is about 1.25 of that.
           const double usual = noise.sample_std_mps2 * std::sqrt(length_s / signal.rate_hz);
           return velocity_range(signal, axis, rest) > far_beyond * usual;

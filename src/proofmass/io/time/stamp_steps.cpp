@@ -45,12 +45,12 @@ std::vector<double> sampled_steps(View<double> stamps) {
 }
 
 /// The median of the steps that are longer than half as much again as this: from one burst to the
-/// next, if rows come in bursts. 0 if there are none.
+/// next, if rows come in bursts. 0 if they are less than a hundredth, and gaps.
 double step_between_bursts(const std::vector<double>& steps, double per_row) {
   std::vector<double> longer;
   std::ranges::copy_if(steps, std::back_inserter(longer),
                        [&](double step) { return step > 1.5 * per_row; });
-  return median(longer).value_or(0.0);
+  return 100 * longer.size() < steps.size() ? 0.0 : *median(longer);
 }
 
 /// Time per row: the mean over segments of rows, without those that are outliers due to gaps; 0 if
