@@ -173,11 +173,12 @@ void drop_unusable(const Triad& accelerometer,
   const auto keep = [&](const std::vector<Note>& found) {
     notes.insert(notes.end(), found.begin(), found.end());
   };
-  keep(signal::drop_stuck(channels, recording));
+  std::vector<std::vector<std::size_t>> sensors{channels};
   if (gyroscope) {
-    keep(signal::drop_stuck({gyroscope->begin(), gyroscope->end()}, recording));
+    sensors.emplace_back(gyroscope->begin(), gyroscope->end());
     channels.insert(channels.end(), gyroscope->begin(), gyroscope->end());
   }
+  keep(signal::drop_stuck(sensors, recording));
   keep(signal::drop_saturated(channels, recording));
 }
 

@@ -308,20 +308,25 @@ struct RecordedSpan {
   double begin_s, end_s;
 };
 
-/// Turns before the first usable measurement and after the last are not counted.
+/// Turns before the first usable measurement and after the last are not counted; bad if the wheel
+/// was turning there.
 void note_ends(const RecordedSpan& recorded, WheelSolution& solution) {
   constexpr double least_s = 0.1;
   const std::vector<double>& time_s = solution.series.time_s;
-  const auto note = [&](const char* which, double missing_s, const char* counted, double from_s) {
+  const auto note = [&](const char* which, double missing_s, const char* counted, std::size_t k) {
     if (missing_s < least_s) return;
-    char text[160];
+    constexpr double clearly = 4.0;
+    const bool turns =
+        std::abs(solution.series.speed_radps[k]) > clearly * solution.series.speed_std_radps[k];
+    char text[200];
     std::snprintf(text, sizeof text,
-                  "the %s %.1f s have no usable measurements: turns and angles count %s %.1f s",
-                  which, missing_s, counted, from_s);
-    solution.notes.push_back({Severity::warning, text});
+                  "the %s %.1f s have no usable measurements: turns and angles count %s %.1f s%s",
+                  which, missing_s, counted, time_s[k],
+                  turns ? ", when the wheel was turning" : "");
+    solution.notes.push_back({turns ? Severity::bad : Severity::warning, text});
   };
-  note("first", time_s.front() - recorded.begin_s, "from", time_s.front());
-  note("last", recorded.end_s - time_s.back(), "until", time_s.back());
+  note("first", time_s.front() - recorded.begin_s, "from", 0);
+  note("last", recorded.end_s - time_s.back(), "until", time_s.size() - 1);
 }
 
 Result<WheelSolution> conclude(const WheelReadings& readings,

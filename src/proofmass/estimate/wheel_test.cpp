@@ -457,13 +457,17 @@ TEST(EstimateWheel, SaysFromWhenToWhenItCounts) {
   for (std::size_t row = 0; row < size; ++row)
     if (row < 60 || row + 30 >= size) sensor.accel_mps2[1][row] = no_value;
   const auto solution = solve({sensor});
-  const auto says = [&](const std::string& text) {
+  const auto says = [&](Severity severity, const std::string& text) {
     return std::ranges::any_of(solution.notes, [&](const Note& note) {
-      return note.text.find(text) != std::string::npos;
+      return note.severity == severity && note.text.find(text) != std::string::npos;
     });
   };
-  EXPECT_TRUE(says("the first 1.0 s have no usable measurements: turns and angles count from 1.0"));
-  EXPECT_TRUE(says("the last 0.5 s have no usable measurements: turns and angles count until"));
+  EXPECT_TRUE(says(Severity::warning,
+                   "the first 1.0 s have no usable measurements: turns and "
+                   "angles count from 1.0"));
+  EXPECT_TRUE(says(Severity::bad,
+                   "the last 0.5 s have no usable measurements: turns and angles "
+                   "count until 8.5 s, when the wheel was turning"));
   expect_turns(solution, lively.turns(1.0, sensor.time_s[size - 31]), 0.01);
 }
 

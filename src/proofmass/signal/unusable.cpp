@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <utility>
 
 #include "proofmass/core/statistics.hpp"
@@ -187,24 +188,61 @@ std::vector<Note> drop_saturated(const std::vector<std::size_t>& channels, Recor
   return notes;
 }
 
-std::vector<Note> drop_stuck(const std::vector<std::size_t>& channels, Recording& recording) {
+namespace {
+
+std::vector<View<double>> axes_of(const std::vector<std::size_t>& channels,
+                                  const Recording& recording) {
   std::vector<View<double>> axes;
   for (const std::size_t c : channels) axes.emplace_back(recording.channels[c].values);
-  const std::vector<Rest> stuck = stuck_intervals(axes, {.rate_hz = recording.time.rate_hz});
-  if (stuck.empty()) return {};
+  return axes;
+}
+
+bool are_constant(const std::vector<View<double>>& axes, const Rest& over) {
+  return std::ranges::all_of(axes, [&](View<double> axis) {
+    const View<double> part = axis.subspan(over.first, over.last - over.first + 1);
+    return std::ranges::all_of(part, [&](double value) { return value == part.front(); });
+  });
+}
+
+Note note_stuck(const std::vector<std::size_t>& channels,
+                const std::vector<Rest>& stuck,
+                const Recording& recording) {
   std::size_t count = 0;
   for (const Rest& one : stuck) count += one.last - one.first;
-  for (const std::size_t c : channels) {
-    std::vector<double>& values = recording.channels[c].values.edit();
-    for (const Rest& one : stuck)
-      std::fill(values.begin() + static_cast<std::ptrdiff_t>(one.first) + 1,
-                values.begin() + static_cast<std::ptrdiff_t>(one.last) + 1, no_value);
+  return {Severity::warning,
+          fmt::format("{} and the sensor's other axes repeat one value in {} of {} samples, from "
+                      "{:.2f} s on, and are not used there",
+                      recording.channels[channels.front()].name, count, recording.samples(),
+                      recording.time.at(stuck.front().first))};
+}
+
+}  // namespace
+
+std::vector<Note> drop_stuck(const std::vector<std::vector<std::size_t>>& sensors,
+                             Recording& recording) {
+  std::vector<std::vector<Rest>> own;
+  for (const auto& channels : sensors)
+    own.push_back(
+        stuck_intervals(axes_of(channels, recording), {.rate_hz = recording.time.rate_hz}));
+  std::vector<std::vector<Rest>> all = own;
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    for (std::size_t other = 0; other < sensors.size(); ++other)
+      if (other != i && own[i].empty())
+        std::ranges::copy_if(own[other], std::back_inserter(all[i]), [&](const Rest& one) {
+          return are_constant(axes_of(sensors[i], recording), one);
+        });
+  std::vector<Note> notes;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (all[i].empty()) continue;
+    notes.push_back(note_stuck(sensors[i], all[i], recording));
+    for (const std::size_t c : sensors[i]) {
+      std::vector<double>& values = recording.channels[c].values.edit();
+      for (const Rest& one : all[i])
+        std::fill(values.begin() + static_cast<std::ptrdiff_t>(one.first) + 1,
+                  values.begin() + static_cast<std::ptrdiff_t>(one.last) + 1, no_value);
+    }
   }
-  return {{Severity::warning,
-           fmt::format("{} and the sensor's other axes repeat one value in {} of {} samples, from "
-                       "{:.2f} s on, and are not used there",
-                       recording.channels[channels.front()].name, count, recording.samples(),
-                       recording.time.at(stuck.front().first))}};
+  return notes;
 }
 
 }  // namespace proofmass::signal

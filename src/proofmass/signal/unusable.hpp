@@ -33,8 +33,10 @@ struct RangeEnds {
 /// any, with their number, the ends and the first time.
 std::vector<Note> drop_saturated(const std::vector<std::size_t>& channels, Recording& recording);
 
-/// Makes the values of these one to three channels, the axes of one sensor, NaN where they are
-/// stuck (stuck_intervals()), but for the first of them. Returns a warning if there are any.
-std::vector<Note> drop_stuck(const std::vector<std::size_t>& channels, Recording& recording);
+/// Makes the values of each sensor, of one to three channels, NaN where they are stuck
+/// (stuck_intervals()), but for the first of them; also where another sensor of the same logger is
+/// stuck and none of its own axes changes. Returns a warning for each sensor that has any.
+std::vector<Note> drop_stuck(const std::vector<std::vector<std::size_t>>& sensors,
+                             Recording& recording);
 
 }  // namespace proofmass::signal

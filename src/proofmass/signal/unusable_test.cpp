@@ -130,7 +130,7 @@ Recording sensor(double noise, double step, std::size_t stuck) {
 TEST(Stuck, ValuesAreDroppedButForTheFirst) {
   for (const std::size_t stuck : {300U, 1000U, 1620U}) {
     Recording recording = sensor(0.01, 1e-3, stuck);
-    const std::vector<Note> notes = drop_stuck({0, 1}, recording);
+    const std::vector<Note> notes = drop_stuck({{0, 1}}, recording);
     ASSERT_EQ(notes.size(), 1U) << stuck;
     EXPECT_THAT(notes[0].text,
                 testing::StartsWith("acc_x and the sensor's other axes repeat one value in 299 of "
@@ -144,10 +144,24 @@ TEST(Stuck, ValuesAreDroppedButForTheFirst) {
 
 TEST(Stuck, IsNoRestOfASensorWithoutNoiseAndNoAxisAlone) {
   Recording coarse = sensor(1e-4, 0.01, 5000);
-  EXPECT_TRUE(drop_stuck({0, 1}, coarse).empty());
+  EXPECT_TRUE(drop_stuck({{0, 1}}, coarse).empty());
   Recording one = sensor(0.01, 1e-3, 1000);
   one.channels[1] = of(logged(0.01, 1e-3, 2, 5000)).channels.front();
-  EXPECT_TRUE(drop_stuck({0, 1}, one).empty());
+  EXPECT_TRUE(drop_stuck({{0, 1}}, one).empty());
+}
+
+// A gyroscope on a table of which the noise is never seen: its bias wanders.
+TEST(Stuck, IsALoggerThatRepeatsTheRowsOfAllSensors) {
+  Recording recording = sensor(0.01, 1e-3, 1000);
+  std::vector<double> rate;
+  for (std::size_t k = 0; k < 3000; ++k)
+    rate.push_back(k > 1000 && k < 1300 ? rate.back() : std::sin(0.05 * static_cast<double>(k)));
+  recording.channels.push_back(of(rate).channels.front());
+  recording.channels.back().name = "gyr_x";
+  EXPECT_TRUE(drop_stuck({{2}}, recording).empty());
+  EXPECT_EQ(drop_stuck({{0, 1}, {2}}, recording).size(), 2U);
+  for (std::size_t k = 0; k < rate.size(); ++k)
+    EXPECT_EQ(std::isnan(recording.channels[2].values[k]), k > 1000 && k < 1300) << k;
 }
 
 }  // namespace
