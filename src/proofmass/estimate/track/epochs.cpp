@@ -125,6 +125,11 @@ class EpochBuilder {
     if (out_.knots.empty() || out_.knots.back() != last) out_.knots.push_back(last);
   }
 
+  // In a longer gap the measurements at its ends fade within this time, and the unknown
+  // acceleration is white: a constant one would be determined by the next stop, together with the
+  // displacement.
+  static constexpr double longest_constant_s = 1.0;
+
   // By trapezoids: the acceleration is linear between measurements. Samples without one are
   // skipped, unless `must`: another quantity is measured there.
   void move_to(std::size_t k, bool must = false) {
@@ -136,19 +141,22 @@ class EpochBuilder {
     }
     InertialEpoch epoch;
     epoch.leaves_rest = !out_.epochs.empty() && out_.epochs.back().resting;
-    const double a1 = known ? signal_.accel_mps2[k] : last_accel_.value_or(0.0);
+    const double h = k > 0 ? signal_.time_s[k] - signal_.time_s[k - 1 - skipped_] : 0.0;
+    const bool lasts = h < longest_constant_s;
+    const double a1 = known ? signal_.accel_mps2[k] : lasts ? last_accel_.value_or(0.0) : 0.0;
     if (k > 0) {
       const double a0 = last_accel_.value_or(a1);
-      const double h = epoch.dt_s = signal_.time_s[k] - signal_.time_s[k - 1 - skipped_];
-      epoch.velocity_step_mps = 0.5 * h * (a0 + a1);
-      epoch.position_step_m = h * h * (a0 / 3.0 + a1 / 6.0);
+      const double T = std::min(h, longest_constant_s);
+      epoch.dt_s = h;
+      epoch.velocity_step_mps = 0.5 * T * (a0 + a1);
+      epoch.position_step_m = T * T * (a0 / 3.0 + a1 / 6.0) + 0.5 * T * a0 * (h - T);
       if (skipped_ > 0 && known) bend(k, h, epoch);
       if (skipped_ > 0 || !known || h > signal_.longest_step_s) {
-        epoch.unknown_accel_m2ps3 = unknown_accel_m2ps3(h);
+        epoch.unknown_accel_m2ps3 = square(signal_.missing_std_mps2) * T;
         knot();
       }
     }
-    if (known) last_accel_ = a1;
+    if (known || !lasts) last_accel_ = a1;
     const std::size_t skipped = skipped_;
     skipped_ = 0;
     push(k, epoch);
@@ -156,13 +164,6 @@ class EpochBuilder {
     if (skipped > 0)
       out_.gaps.push_back({k - skipped, k - 1, std::sqrt(epoch.unknown_accel_m2ps3 / epoch.dt_s)});
     if (epoch.unknown_accel_m2ps3 > 0.0) knot();
-  }
-
-  // Over longer times than `constant_s` the acceleration is white: a constant one would be
-  // determined by the next stop, together with the displacement.
-  [[nodiscard]] double unknown_accel_m2ps3(double step_s) const {
-    constexpr double constant_s = 1.0;
-    return square(signal_.missing_std_mps2) * std::min(step_s, constant_s);
   }
 
   // Adds what a cubic with the slopes on both sides of a gap, which ends at k, encloses beyond the
