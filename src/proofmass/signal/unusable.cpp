@@ -147,12 +147,14 @@ RangeEnds range_ends(const Channel& axis, const std::vector<View<double>>& other
   const ChannelAudit found = rails_of(axis);
   RangeEnds ends = far_rails(found, series);
   const double low = found.moments.min, high = found.moments.max;
-  if (!(low < high)) return ends;
+  constexpr double fewest_levels = 32.0;  // fewer are the ends of noise
+  const double lsb = found.lsb.value_or(0.0);
+  if (!(low < high) || high - low < fewest_levels * lsb) return ends;
   std::vector<Witness> witnesses;
   for (const auto& [value, end] : {std::pair{low, &ends.low}, {high, &ends.high}}) {
     if (*end) continue;
     const std::vector<Run> runs = runs_at(series, value);
-    if (!are_too_steep(series, runs, value, found.lsb.value_or(0.0))) continue;
+    if (!are_too_steep(series, runs, value, lsb)) continue;
     if (witnesses.empty())
       for (const View<double> other : others) witnesses.emplace_back(other);
     if (most_move(runs, witnesses) || stand_out(series, runs, low, high)) *end = value;
@@ -209,11 +211,12 @@ Note note_stuck(const std::vector<std::size_t>& channels,
                 const Recording& recording) {
   std::size_t count = 0;
   for (const Rest& one : stuck) count += one.last - one.first;
-  return {Severity::warning,
-          fmt::format("{} and the sensor's other axes repeat one value in {} of {} samples, from "
-                      "{:.2f} s on, and are not used there",
-                      recording.channels[channels.front()].name, count, recording.samples(),
-                      recording.time.at(stuck.front().first))};
+  return {
+      Severity::warning,
+      fmt::format("{} one value in {} of {} samples, from {:.2f} s on, which are not used",
+                  recording.channels[channels.front()].name +
+                      (channels.size() > 1 ? " and the sensor's other axes repeat" : " repeats"),
+                  count, recording.samples(), recording.time.at(stuck.front().first))};
 }
 
 }  // namespace
