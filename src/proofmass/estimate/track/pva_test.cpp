@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/track/jerk.hpp"
 #include "proofmass/estimate/track_test_support.hpp"
 
@@ -46,6 +47,25 @@ TEST(TrackPva, GoesWhereTheInertialFilterGoes) {
   EXPECT_NEAR(pva.smoother->displacement_m.value, inertial.smoother->displacement_m.value, std);
   EXPECT_NEAR(pva.smoother->displacement_m.std, std, 0.15 * std);
   EXPECT_LT(largest_difference(pva.series.position_m, made.position_m), 0.02);
+}
+
+// As at the limit of a range: the acceleration that is missing is the largest of the motion, not
+// between the neighbours within what white jerk explains.
+TEST(TrackPva, IsAsUncertainAcrossMissingMeasurementsAsTheInertialFilter) {
+  CarriageRecord made = record({});
+  double largest = 0.0;
+  for (const double accel : made.accel_mps2) largest = std::max(largest, std::abs(accel));
+  for (std::size_t k = 0; k < made.accel_mps2.size(); ++k)
+    if (std::abs(made.accel_mps2[k]) > 0.7 * largest)
+      for (auto& axis : made.sensor.accel_mps2) axis[k] = no_value;
+  const TrackSolution pva = solved(made.sensor, {.model = TrackModel::pva});
+  for (std::size_t k = 0; k < made.position_m.size(); ++k)
+    EXPECT_NEAR(pva.series.position_m[k], made.position_m[k],
+                4.0 * pva.series.position_std_m[k] + 1e-9)
+        << k;
+  const double std_m = solved(made.sensor, {}).smoother->displacement_m.std;
+  EXPECT_GT(pva.smoother->displacement_m.std, 0.5 * std_m);
+  EXPECT_LT(pva.smoother->displacement_m.std, 2.0 * std_m);
 }
 
 TEST(TrackPva, FindsTheJerkThatDroveTheMotion) {
