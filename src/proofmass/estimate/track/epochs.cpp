@@ -150,7 +150,7 @@ class EpochBuilder {
       epoch.dt_s = h;
       epoch.velocity_step_mps = 0.5 * T * (a0 + a1);
       epoch.position_step_m = T * T * (a0 / 3.0 + a1 / 6.0) + 0.5 * T * a0 * (h - T);
-      if (skipped_ > 0 && known) bend(k, h, epoch);
+      if (skipped_ > 0 && known && lasts) bend(k, h, epoch);
       if (skipped_ > 0 || !known || h > signal_.longest_step_s) {
         epoch.unknown_accel_m2ps3 = square(signal_.missing_std_mps2) * T;
         knot();
