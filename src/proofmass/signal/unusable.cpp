@@ -31,17 +31,14 @@ std::vector<Run> runs_at(View<double> series, double value) {
   return runs;
 }
 
-// Whether a quarter of the runs' sides, two at least, are too steep for a crest in quantisation
-// steps: that is flat for a run of L only if the next step is below 8 / L of them. L counts up to
-// 16, since beyond that a motion may end softly at rest.
-bool are_too_steep(View<double> series, const std::vector<Run>& runs, double value, double lsb) {
-  constexpr std::size_t longest = 16;
+// Whether a quarter of the runs' sides, two at least, are too steep for a crest.
+bool are_cut_off(View<double> series, const std::vector<Run>& runs, double value, double lsb) {
   std::size_t steep = 0, sides = 0;
   const auto add = [&](const Run& run, double nearer, double farther) {
     const double towards = nearer < value ? 1.0 : -1.0;
     const double step = std::min(towards * (value - nearer), towards * (nearer - farther));
     ++sides;
-    if (step * static_cast<double>(std::min(run.size(), longest)) > 7.96 * lsb) ++steep;
+    if (is_cut_off(run.size(), step, lsb)) ++steep;
   };
   for (const Run& run : runs) {
     if (run.first >= 2) add(run, series[run.first - 1], series[run.first - 2]);
@@ -154,7 +151,7 @@ RangeEnds range_ends(const Channel& axis, const std::vector<View<double>>& other
   for (const auto& [value, end] : {std::pair{low, &ends.low}, {high, &ends.high}}) {
     if (*end) continue;
     const std::vector<Run> runs = runs_at(series, value);
-    if (!are_too_steep(series, runs, value, lsb)) continue;
+    if (!are_cut_off(series, runs, value, lsb)) continue;
     if (witnesses.empty())
       for (const View<double> other : others) witnesses.emplace_back(other);
     if (most_move(runs, witnesses) || stand_out(series, runs, low, high)) *end = value;

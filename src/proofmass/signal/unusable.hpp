@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -8,6 +9,15 @@
 
 // Values of a sensor that are no measurements: at an end of its range, or stuck.
 namespace proofmass::signal {
+
+/// Whether `run` equal values, next to which the signal changes by `slope` per sample towards them,
+/// are too many for a crest in quantisation steps: that is flat for L samples only if the slope is
+/// below 8 / L steps. A run counts up to 16, since beyond that a motion may end softly at rest.
+[[nodiscard]] inline bool is_cut_off(std::size_t run, double slope, double step) {
+  constexpr std::size_t longest = 16;
+  constexpr double of_a_crest = 7.96;  // 8, less rounding
+  return slope * static_cast<double>(std::min(run, longest)) > of_a_crest * step;
+}
 
 /// Ends of a channel's range that the signal ran into.
 struct RangeEnds {

@@ -9,6 +9,7 @@
 #include "proofmass/core/contract.hpp"
 #include "proofmass/estimate/live_columns.hpp"
 #include "proofmass/estimate/wheel/plane.hpp"
+#include "proofmass/signal/unusable.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -153,7 +154,7 @@ const char* LiveEpochs::why_not(std::size_t vector, const Axis& value) {
 }
 
 bool LiveEpochs::Range::ends_at(double value) {
-  constexpr std::size_t fewest = 3, most_counted = 16;  // as signal::range_ends()
+  constexpr std::size_t fewest = 3;
   if (value == last_) {
     ++equal_;
   } else {
@@ -165,8 +166,7 @@ bool LiveEpochs::Range::ends_at(double value) {
   before_ = last_;
   last_ = value;
   most_ = std::max(most_, std::abs(value));
-  return equal_ >= fewest && std::abs(value) == most_ &&
-         slope_ * static_cast<double>(std::min(equal_, most_counted)) > 7.96 * step_;
+  return equal_ >= fewest && std::abs(value) == most_ && signal::is_cut_off(equal_, slope_, step_);
 }
 
 bool LiveEpochs::close() {
