@@ -301,7 +301,7 @@ Result<TrackSolution> estimate_track(const TrackSensor& sensor, const TrackOptio
   if (!made) return made.error();
   TrackSignal signal = std::move(made).value();
   if (options.fixes.empty())
-    if (const auto gap = endless_gap(signal)) return *gap;
+    if (const auto gap = unbridgeable_gap(signal)) return *gap;
   if (signal.stops.rests.empty() && options.fixes.empty()) return no_stop(signal);
   if (rests_are_in_doubt(options)) {
     if (may_hide_motion(signal)) return hidden_motion();

@@ -303,7 +303,7 @@ double noise_mps2(const WheelReadings& readings, std::size_t sensor) {
   return std::sqrt(*quantile(variance, 0.05));
 }
 
-/// Of the first sensor, with its unusable rows.
+/// The time span of the first sensor's rows, usable or not.
 struct RecordedSpan {
   double begin_s, end_s;
 };

@@ -8,7 +8,7 @@
 // Acceleration of the base, from the scatter of the force.
 namespace proofmass::estimate {
 
-/// Of the gyroscope.
+/// The gyroscope's bias.
 struct RateBias {
   Mat<3> mean_radps = Mat<3>::Zero();
   /// Standard deviation of the rotation of gravity in sensor axes that it leaves, each axis.

@@ -151,7 +151,7 @@ double usual_rate_hz(const std::vector<double>& time_s) {
   return step > 0.0 ? 1.0 / step : 0.0;
 }
 
-// Samples.
+// The shortest rest, in samples.
 std::size_t shortest_rest(const TiltOptions& options, double rate_hz) {
   constexpr double usual_s = 0.5;
   return std::max<std::size_t>(

@@ -25,8 +25,8 @@ void leave_out_rotations(const TiltRecord& record,
 
 /// For a moving base: next to motion a rest loses 0.4 s, or a quarter, in which a slow onset is
 /// hidden in the noise. Angles there would be stated to be those of the rest, to its accuracy. An
-/// interval between motions of which less than the shortest rest then remains is none: a slow
-/// acceleration may be constant for so long.
+/// interval between motions is dropped if less than the shortest rest then remains, because a slow
+/// acceleration may be constant for that long.
 void leave_out_hidden_onsets(const TiltRecord& record,
                              const TiltOptions& options,
                              signal::RestSearch& found);

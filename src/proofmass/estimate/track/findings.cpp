@@ -174,7 +174,7 @@ Error hidden_motion() {
       {Advice{"still"}}};
 }
 
-std::optional<Error> endless_gap(const TrackSignal& signal) {
+std::optional<Error> unbridgeable_gap(const TrackSignal& signal) {
   constexpr double longest_s = 60.0;
   double last_s = signal.time_s.front();
   for (std::size_t k = 0; k < signal.time_s.size(); ++k) {

@@ -14,7 +14,7 @@ namespace proofmass::estimate {
 [[nodiscard]] Error hidden_motion();
 
 /// If there is a gap of more than a minute: the displacement across it may be any.
-[[nodiscard]] std::optional<Error> endless_gap(const TrackSignal& signal);
+[[nodiscard]] std::optional<Error> unbridgeable_gap(const TrackSignal& signal);
 
 /// Relative uncertainty of the measurements' scale along the solution's axis: as given; else 1 %,
 /// but along gravity its departure at rest from the expected value, at least 0.3 %.
