@@ -47,6 +47,25 @@ class Noise(CommandTest):
         line = self.expect_failure(USAGE, "noise", "rest.csv", "--taus", "0.00001")
         self.assertIn("acc_x: no averaging time fits", line)
 
+    def test_a_logger_that_repeats_its_last_row_adds_no_noise(self):
+        values = white(20000, 1e-3, 5)
+        for first in range(500, 20000, 2000):
+            values[first:first + 200] = [values[first]] * 200
+        self.write("stuck.csv", table({"acc_x (g)": values}, 100.0))
+        channel = self.document("noise", "stuck.csv")["channels"][0]
+        found = channel["parameters"]["white"]
+        self.assertEqual(channel["missing"], 10 * 199)
+        self.assertAlmostEqual(found["value"], 1e-4 * G, delta=3 * found["std"])
+        self.assertEqual(channel["parameters"]["flicker"]["verdict"], "not_observable")
+
+    def test_rows_written_twice_count_once(self):
+        text = table({"acc_x (g)": white(5000, 1e-3, 6)}, 100.0).splitlines(keepends=True)
+        self.write("twice.csv", "".join(line * (1 + (k % 50 == 49)) for k, line in enumerate(text)))
+        document = self.document("noise", "twice.csv")
+        self.assertEqual(document["channels"][0]["samples"], 5000)
+        self.assertEqual(document["channels"][0]["rate_hz"], 100.0)
+        self.assertTrue(any("rows repeat the one before" in note for note in document["warnings"]))
+
     def test_white_noise_is_found_in_si_within_its_std(self):
         self.rest()
         document = self.document("noise", "rest.csv")

@@ -12,7 +12,7 @@
 
 #include "cli/exit_status.hpp"
 #include "host.hpp"
-#include "proofmass/core/rising_stamps.hpp"
+#include "proofmass/core/repeated_rows.hpp"
 #include "proofmass/io/recording_in_memory.hpp"
 #include "proofmass/sensor/calibration.hpp"
 #include "proofmass/sensor/gravity.hpp"
@@ -140,9 +140,9 @@ std::optional<Recording> given_recording(const std::string& file, const InputFla
 }
 
 Recording load(const std::string& file, const InputFlags& flags, const Progress& progress) {
-  if (auto given = given_recording(file, flags)) return std::move(*given);
-  return cut_to_window(
-      need(io::read_recording(file, read_options(flags, progress)), Stage::reading), flags);
+  if (auto given = given_recording(file, flags)) return without_repeated_rows(std::move(*given));
+  return without_repeated_rows(cut_to_window(
+      need(io::read_recording(file, read_options(flags, progress)), Stage::reading), flags));
 }
 
 Recording load_even(const std::string& file, const InputFlags& flags, const Progress& progress) {

@@ -27,7 +27,8 @@ namespace proofmass::app {
                                     const InputFlags& flags,
                                     const Progress& progress);
 
-/// Reads a recording according to the flags, cut to --from and --to. Throws Failure.
+/// Reads a recording according to the flags, cut to --from and --to, without rows that a logger
+/// wrote twice (without_repeated_rows()). Throws Failure.
 [[nodiscard]] Recording load(const std::string& file,
                              const InputFlags& flags,
                              const Progress& progress);

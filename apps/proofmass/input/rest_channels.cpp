@@ -11,10 +11,12 @@
 #include "input/block_reader.hpp"
 #include "input/channel_selection.hpp"
 #include "input/input.hpp"
+#include "proofmass/core/repeated_rows.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/signal/audit.hpp"
 #include "proofmass/signal/even_grid.hpp"
 #include "proofmass/signal/rests.hpp"
+#include "proofmass/signal/unusable.hpp"
 
 namespace proofmass::app {
 namespace {
@@ -145,11 +147,23 @@ void calibrate_chosen(Source& source, const InputFlags& flags, std::vector<Note>
   source.recording = std::move(one.front());
 }
 
+bool is_of_motion(Quantity quantity) {
+  return quantity == Quantity::acceleration || quantity == Quantity::angular_rate ||
+         quantity == Quantity::voltage || quantity == Quantity::counts;
+}
+
 bool shows_motion(const RestChannel& channel) {
-  const Quantity quantity = channel.unit.quantity;
-  return !channel.series.empty() &&
-         (quantity == Quantity::acceleration || quantity == Quantity::angular_rate ||
-          quantity == Quantity::voltage || quantity == Quantity::counts);
+  return !channel.series.empty() && is_of_motion(channel.unit.quantity);
+}
+
+// The values that a sensor or its logger repeats are missing. The channels are analysed one by one,
+// and so is their noise, which shows that a value is repeated.
+void drop_stuck(Source& source, const std::string& prefix, std::vector<Note>& notes) {
+  std::vector<std::vector<std::size_t>> one_by_one;
+  for (const std::size_t k : source.chosen)
+    if (is_of_motion(source.recording.channels[k].unit.quantity)) one_by_one.push_back({k});
+  for (const Note& note : signal::drop_stuck(one_by_one, source.recording))
+    notes.push_back({note.severity, prefix + note.text});
 }
 
 // The same quantity of the same file.
@@ -252,7 +266,7 @@ RestRecording rest_recording(Recording recording,
   const std::string prefix = file_prefix(file, options);
   out.start_ns = recording.time.start_ns;
   Source source;
-  source.recording = std::move(recording);
+  source.recording = without_repeated_rows(std::move(recording));
   source.temperature = temperature_in(source.recording, options, notes);
   RestChoice choice =
       choose_rest(source.recording, source.temperature, !options.input.channels.empty());
@@ -260,6 +274,7 @@ RestRecording rest_recording(Recording recording,
   source.axes = std::move(choice.axes);
   if (source.chosen.empty()) throw Failure(usage, file + ": no channel to analyse");
   audit(source, prefix, notes);
+  if (!options.is_phase) drop_stuck(source, prefix, notes);
   calibrate_chosen(source, options.input, notes);
   lay_out(source, prefix, notes);
   for (std::size_t k = 0; k < source.chosen.size(); ++k) {

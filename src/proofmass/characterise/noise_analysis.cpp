@@ -138,6 +138,12 @@ Result<NoiseAnalysis> analyse_noise(View<double> series, const NoiseOptions& opt
     analysis.parts = noise_of_parts(used, options);
     widen_to_parts(analysis.parts, analysis.model);
   }
+  if (!options.exclude_events && !passes.events.empty() && analysis.model.ordinates > 0) {
+    const std::vector<double> without = without_events(used, passes.events, options.rate_hz);
+    NoiseAccumulator accumulator(options, without.size());
+    accumulator.add(without);
+    widen_to_fit_without_events(accumulator.finish_spectrum().model, analysis.model);
+  }
   analysis.samples = series.size();
   analysis.duration_s = static_cast<double>(series.size()) / options.rate_hz;
   const CurveVariances variances = is_difference(options.statistic)

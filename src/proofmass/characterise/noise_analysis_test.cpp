@@ -263,6 +263,15 @@ TEST(AnalyseNoise, ReportsOutliersAndStepsAndExcludesThemOnRequest) {
   EXPECT_NEAR(dropped.model.white.value, 1e-3, 3.5 * dropped.model.white.std);
 }
 
+TEST(AnalyseNoise, IntervalsContainTheNoiseWithoutOutliers) {
+  Series noise = test::white(1e-3, rate_hz, 60'000, 15);
+  for (std::size_t k = 500; k < noise.size(); k += 3000) noise[k] += 1.0;
+  const Coefficient found = analysed(noise, at_rest()).model.white;
+  EXPECT_GT(found.value, 1.5e-3);
+  EXPECT_LT(found.lower_95, 1e-3);
+  EXPECT_NEAR(found.value, 1e-3, 2.1 * found.std);
+}
+
 TEST(AnalyseNoise, RefusesOptionsThatMakeNoSense) {
   const Series series = test::normals(100, 16);
   const auto refused = [&](auto change) {

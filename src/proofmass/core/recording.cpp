@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
+#include <fmt/format.h>
 
-#include "proofmass/core/rising_stamps.hpp"
+#include "proofmass/core/repeated_rows.hpp"
 
 namespace proofmass {
 namespace {
@@ -120,6 +122,41 @@ Recording with_rising_stamps(const Recording& recording) {
   for (std::size_t k = 0; k < recording.samples(); ++k)
     if (kept.empty() || recording.time.at(k) > recording.time.at(kept.back())) kept.push_back(k);
   return kept.size() == recording.samples() ? recording : samples_of(recording, kept);
+}
+
+Recording without_repeated_rows(Recording recording) {
+  if (recording.time.is_uniform()) return recording;
+  const auto equals_previous = [&](std::size_t k) {
+    return std::ranges::all_of(recording.channels, [k](const Channel& channel) {
+      const double value = channel.values[k], previous = channel.values[k - 1];
+      return value == previous || (std::isnan(value) && std::isnan(previous));
+    });
+  };
+  // Pairs of adjacent rows, and those with equal values.
+  struct Pairs {
+    std::size_t all = 0, equal = 0;
+  };
+  Pairs of_one_time, of_two;
+  std::vector<std::size_t> kept{0};
+  for (std::size_t k = 1; k < recording.samples(); ++k) {
+    const bool same_time = recording.time.stamps_s[k] == recording.time.stamps_s[k - 1];
+    const bool equal = equals_previous(k);
+    Pairs& pairs = same_time ? of_one_time : of_two;
+    ++pairs.all;
+    pairs.equal += equal ? 1 : 0;
+    if (!same_time || !equal) kept.push_back(k);
+  }
+  const std::size_t repeats = of_one_time.equal;
+  const bool are_repeats =
+      repeats > 0 && 10 * repeats >= 9 * of_one_time.all && 2 * of_two.equal < of_two.all;
+  if (!are_repeats) return recording;
+  Recording once = samples_of(recording, kept);
+  const bool one = repeats == 1;
+  once.notes.push_back({Severity::warning,
+                        fmt::format("{} the one before, stamp and values, and {} left out",
+                                    one ? "1 row repeats" : fmt::format("{} rows repeat", repeats),
+                                    one ? "is" : "are")});
+  return once;
 }
 
 std::vector<Triad> accelerometer_triads(const Recording& recording) {

@@ -1,6 +1,9 @@
 #include "proofmass/core/recording.hpp"
 
+#include <cmath>
 #include <gtest/gtest.h>
+
+#include "proofmass/core/repeated_rows.hpp"
 
 namespace proofmass::recording_test {
 namespace {
@@ -73,6 +76,44 @@ TEST(Cut, KeepsTheWindowAndItsTime) {
   EXPECT_EQ(part.time.start_ns, 100'000'000);
   EXPECT_FALSE(cut(with_channels({"x"}, "g"), 5.0, 6.0));
   EXPECT_FALSE(cut(with_channels({"x"}, "g"), 0.3, 0.1));
+}
+
+Recording stamped(std::vector<double> stamps_s, std::vector<double> values) {
+  Recording recording;
+  recording.channels.push_back({"x", parse_unit("g").value(), std::move(values)});
+  recording.time = {.source = TimeSource::stamps,
+                    .channel = "t",
+                    .rate_hz = 10.0,
+                    .stamps_s = std::move(stamps_s),
+                    .start_ns = 0};
+  return recording;
+}
+
+TEST(RepeatedRows, WrittenTwiceAreLeftOut) {
+  const double nan = std::nan("");
+  const Recording once = without_repeated_rows(
+      stamped({0.0, 0.1, 0.1, 0.2, 0.3, 0.3, 0.4}, {1.0, 2.0, 2.0, 3.0, nan, nan, 5.0}));
+  ASSERT_EQ(once.samples(), 5U);
+  EXPECT_EQ(once.time.stamps_s, (std::vector{0.0, 0.1, 0.2, 0.3, 0.4}));
+  EXPECT_EQ(once.channels[0].values[2], 3.0);
+  EXPECT_EQ(once.channels[0].values[4], 5.0);
+  ASSERT_EQ(once.notes.size(), 1U);
+  EXPECT_TRUE(once.notes[0].text.starts_with("2 rows repeat the one before")) << once.notes[0].text;
+}
+
+TEST(RepeatedRows, OfOneStampThatDifferAreKept) {
+  EXPECT_EQ(without_repeated_rows(stamped({0.0, 0.1, 0.1, 0.2}, {1.0, 2.0, 3.0, 4.0})).samples(),
+            4U);
+}
+
+TEST(RepeatedRows, OfACoarseSensorAreSamplesOfTheirOwn) {
+  // Two samples for each stamp, of a sensor that changes now and then.
+  std::vector<double> stamps_s, values;
+  for (int k = 0; k < 40; ++k) {
+    stamps_s.push_back(0.2 * (k / 2));
+    values.push_back(k / 10);
+  }
+  EXPECT_EQ(without_repeated_rows(stamped(stamps_s, values)).samples(), 40U);
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ struct EvenGrid {
 ///
 /// - Jitter is ignored. An interval longer than 1.5 nominal periods is a hole of round(interval ·
 ///   rate) − 1 samples, unless the eight samples on either side compensate for it, as they do when
-///   only the host's stamp was late.
+///   only the host's stamp was late, or as many later ones as it is long, as they do when the host
+///   stalled.
 /// - Where single intervals are not conclusive (TimeBase::band_s), StampBand determines where
 ///   samples are missing.
 /// - The rate is the nominal one. With stamps (none backwards by more than a period) it is that of

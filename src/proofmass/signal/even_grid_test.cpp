@@ -69,6 +69,25 @@ TEST(EvenGrid, TakesAStampThatWasLateForNoHole) {
   EXPECT_EQ(grid->missing, 0U);
 }
 
+TEST(EvenGrid, TakesAStallOfTheLoggerForNoHole) {
+  // For 0.3 s rows were not stamped; then all of them were, a tenth of a millisecond apart.
+  const auto stalled_until = [](std::size_t lost) {
+    std::vector<double> stamps_s;
+    for (std::size_t k = 0; k < 200; ++k)
+      stamps_s.push_back(0.01 * static_cast<double>(k < 130 ? k : k + lost));
+    for (std::size_t k = 100; k < 130; ++k)
+      stamps_s[k] = stamps_s[130] - 1e-4 * static_cast<double>(130 - k);
+    return stamps_s;
+  };
+  const auto grid = even_grid(stamped(stalled_until(0), 100.0), 200);
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->missing, 0U);
+  EXPECT_NEAR(grid->rate_hz, 100.0, 1e-9);
+  const auto with_loss = even_grid(stamped(stalled_until(12), 100.0), 200);
+  ASSERT_TRUE(with_loss);
+  EXPECT_EQ(with_loss->missing, 12U);
+}
+
 TEST(EvenGrid, FindsTwoHolesCloseToEachOther) {
   std::vector<double> stamps_s;
   stamps_s.reserve(40);

@@ -56,15 +56,20 @@ TEST(RunningEvenGrid, LaysEachSampleWhereTheWholeRecordingHasIt) {
     SCOPED_TRACE(trial);
     const auto n = static_cast<std::size_t>(3000.0 * uniform(random)) + 1;
     const double often = 0.2 * uniform(random), scatter = 0.4 * uniform(random);
+    const double stalls = 0.01 * uniform(random);
     std::vector<double> stamps_s;
     std::vector<std::vector<double>> channels(2);
     for (double s = 0.0; stamps_s.size() < n;) {
       stamps_s.push_back(s);
       s += 0.01 * (1.0 + scatter * (uniform(random) - 0.5));
       if (uniform(random) < often) s += 0.01 * std::floor(6.0 * uniform(random) - 1.0);
+      if (uniform(random) < stalls) s += 0.01 * std::floor(300.0 * uniform(random));
       channels[0].push_back(uniform(random) < 0.1 ? 3e34 : uniform(random));
       channels[1].push_back(static_cast<double>(stamps_s.size()));
     }
+    if (trial % 3 == 0)  // rows that were late, and stamped together
+      for (std::size_t k = 100; k + 50 < n; k += 400)
+        std::fill_n(stamps_s.begin() + static_cast<std::ptrdiff_t>(k), 50, stamps_s[k + 50]);
     const TimeBase time = base_of(stamps_s);
     RunningEvenGrid running(time, 2);
     Laid laid;

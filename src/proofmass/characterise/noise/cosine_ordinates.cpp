@@ -16,7 +16,7 @@ namespace {
 // Maximum number of single-sample blocks.
 constexpr std::size_t most_blocks = std::size_t{1} << 16;
 constexpr std::size_t shortest_stretch = 16;
-constexpr std::size_t neighbours = 8;
+constexpr std::size_t fewest_neighbours = 8;
 constexpr std::size_t transform_any_length_below = 4096;
 
 struct Stretch {
@@ -30,7 +30,7 @@ std::size_t end_of_gap(View<double> means, std::size_t from) {
 
 // Parts between gaps too long to be filled.
 std::vector<Stretch> stretches(View<double> means) {
-  const std::size_t longest_gap = std::max<std::size_t>(neighbours, means.size() / 200);
+  const std::size_t longest_gap = std::max<std::size_t>(fewest_neighbours, means.size() / 200);
   std::vector<Stretch> parts;
   std::size_t k = end_of_gap(means, 0);
   while (k < means.size()) {
@@ -50,7 +50,10 @@ std::vector<Stretch> stretches(View<double> means) {
   return parts;
 }
 
+// On each side as many as are missing: the mean of a few would be white noise drawn out over a long
+// gap, which looks like slow noise.
 double mean_of_neighbours(View<double> values, std::size_t gap, std::size_t after) {
+  const std::size_t neighbours = std::max(fewest_neighbours, after - gap);
   double sum = 0.0;
   std::size_t count = 0;
   const auto take = [&](double value) {

@@ -64,7 +64,7 @@ class BlockMeans {
   /// Cosine transforms of the stretches between long gaps, frequency above zero, ascending within
   /// each stretch. The upper limit is half the rate or, for blocks longer than a sample, a quarter
   /// of the blocks' rate, where aliasing becomes significant. A short gap is filled with the mean
-  /// of its neighbours and the densities are corrected for it.
+  /// of as many neighbours on each side, and the densities are corrected for it.
   ///
   /// The type II transform diagonalises a random walk about any level, and white noise, exactly
   /// (its vectors are those of the second difference with free ends), and any stationary noise

@@ -269,5 +269,18 @@ TEST(BlockMeans, TheDensityOfWhiteNoiseIsKeptWhereOneInTenIsMissing) {
   EXPECT_NEAR(ratio, 1.0, 4.0 * scatter + 0.02);
 }
 
+TEST(BlockMeans, LongGapsInWhiteNoiseAddNoSlowNoise) {
+  constexpr std::size_t samples = 50'000, length = 200;
+  Series series = test::white(1.0, rate_hz, samples, 21);
+  for (std::size_t first = 1000; first + length < samples; first += 2500)
+    std::fill_n(series.begin() + static_cast<std::ptrdiff_t>(first), length, nan_value);
+  std::vector<CosineOrdinate> slow = ordinates_of(series);
+  // Below one over the length of a gap.
+  std::erase_if(slow, [](const CosineOrdinate& one) { return one.frequency_hz > 0.5; });
+  double scatter = 0.0;
+  const double ratio = mean_ratio(slow, Term::white, 1, scatter);
+  EXPECT_NEAR(ratio, 1.0, 3.0 * scatter + 0.1);
+}
+
 }  // namespace
 }  // namespace proofmass::characterise::low_band_test

@@ -41,6 +41,16 @@ bool differs(const std::vector<NoisePart>& parts, Coefficient NoiseModelFit::* w
   return absent || (count > 1.0 && chi_square_p(squares, count - 1.0) < differs_p);
 }
 
+constexpr std::array terms = {&NoiseModelFit::white, &NoiseModelFit::quantisation,
+                              &NoiseModelFit::flicker, &NoiseModelFit::random_walk};
+
+void span(const Coefficient& other, Coefficient& whole) {
+  whole.lower_95 = std::min(whole.lower_95, other.lower_95);
+  if (other.verdict != Verdict::identified) return;
+  whole.upper_95 = std::max(whole.upper_95, other.upper_95);
+  whole.upper_two_sided_95 = std::max(whole.upper_two_sided_95, other.upper_two_sided_95);
+}
+
 }  // namespace
 
 std::vector<NoisePart> noise_of_parts(View<double> series, const NoiseOptions& options) {
@@ -61,17 +71,23 @@ std::vector<NoisePart> noise_of_parts(View<double> series, const NoiseOptions& o
 }
 
 void widen_to_parts(const std::vector<NoisePart>& parts, NoiseModelFit& model) {
-  for (const auto which : {&NoiseModelFit::white, &NoiseModelFit::quantisation,
-                           &NoiseModelFit::flicker, &NoiseModelFit::random_walk}) {
+  for (const auto which : terms) {
     if (!differs(parts, which)) continue;
+    for (const NoisePart& part : parts) span(part.model.*which, model.*which);
+    set_std_of_longer_side(model.*which);
+  }
+}
+
+void widen_to_fit_without_events(const NoiseModelFit& without, NoiseModelFit& model) {
+  for (const auto which : terms) {
+    const Coefficient& other = without.*which;
     Coefficient& whole = model.*which;
-    for (const NoisePart& part : parts) {
-      const Coefficient& found = part.model.*which;
-      whole.lower_95 = std::min(whole.lower_95, found.lower_95);
-      if (found.verdict != Verdict::identified) continue;
-      whole.upper_95 = std::max(whole.upper_95, found.upper_95);
-      whole.upper_two_sided_95 = std::max(whole.upper_two_sided_95, found.upper_two_sided_95);
-    }
+    // A term that is not observable may be as large as its bound.
+    const bool identified = other.verdict == Verdict::identified;
+    const double least = identified ? other.value : other.lower_95;
+    const double most = identified ? other.value : other.upper_two_sided_95;
+    if (least <= whole.upper_two_sided_95 && most >= whole.lower_95) continue;
+    span(other, whole);
     set_std_of_longer_side(whole);
   }
 }

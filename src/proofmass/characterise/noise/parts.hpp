@@ -5,7 +5,7 @@
 #include "proofmass/characterise/noise_analysis.hpp"
 #include "proofmass/core/view.hpp"
 
-// Variation of nonstationary noise within a recording.
+// Noise that depends on the part of a recording, or on its events.
 namespace proofmass::characterise {
 
 /// The model of each of eight equal parts, or of four if an eighth is too short; empty if a quarter
@@ -17,5 +17,9 @@ namespace proofmass::characterise {
 /// their differences at one in a thousand) to span those of the parts, with their standard
 /// deviations; the values stay those of the whole recording.
 void widen_to_parts(const std::vector<NoisePart>& parts, NoiseModelFit& model);
+
+/// Widens the intervals that do not contain the value of the recording without its outliers and
+/// steps to span that one's interval.
+void widen_to_fit_without_events(const NoiseModelFit& without, NoiseModelFit& model);
 
 }  // namespace proofmass::characterise

@@ -41,7 +41,7 @@ void RunningTiming::take_holes() {
       add_gap({recent_[hole.before - 1 - first], static_cast<double>(hole.missing + 1) / rate_hz_});
   take_numbers();
   fresh_.clear();
-  const std::size_t kept = std::min(recent_.size(), HoleFinder::most_undecided + 1);
+  const std::size_t kept = std::min(recent_.size(), stamps_ - numbered_ + 1);
   recent_.erase(recent_.begin(), recent_.end() - static_cast<std::ptrdiff_t>(kept));
 }
 

@@ -81,9 +81,34 @@ void HoleFinder::decide(bool is_end, std::vector<Hole>& holes) {
       ++regular_;
       continue;
     }
-    if (!is_end && at + nearby >= recent_.size()) return;
+    if (!is_end && at + needed_after(at) >= recent_.size()) return;
     count(missing_before(at), holes);
   }
+}
+
+bool HoleFinder::is_long(std::size_t at) const {
+  return (recent_[at] - recent_[at - 1]) * rate_hz_ > longest_step;
+}
+
+// Later rows with which the long interval before this one is judged: after a stall of the computer,
+// as many as were late.
+std::size_t HoleFinder::needed_after(std::size_t at) const {
+  const double late = (recent_[at] - recent_[at - 1]) * rate_hz_;
+  constexpr double longest_stall = most_undecided - nearby - 1;
+  const bool may_be_stall = late > nearby + 1 && late < longest_stall;
+  return may_be_stall ? nearby + static_cast<std::size_t>(late) : nearby;
+}
+
+// In periods, relative to an even grid through another sample.
+double HoleFinder::lateness(std::size_t at, std::size_t than) const {
+  return (recent_[at] - recent_[than]) * rate_hz_ -
+         (static_cast<double>(at) - static_cast<double>(than));
+}
+
+double HoleFinder::median_lateness(std::size_t from, std::size_t end, std::size_t than) const {
+  std::array<double, nearby> all{};
+  for (std::size_t k = from; k < end; ++k) all[k - from] = lateness(k, than);
+  return *median(View<double>(all).first(end - from));
 }
 
 // Samples missing before the one at this index of the recent ones, which follows a long interval.
@@ -95,29 +120,32 @@ void HoleFinder::decide(bool is_end, std::vector<Hole>& holes) {
 //   included: after late stamps others follow early.
 double HoleFinder::missing_before(std::size_t at) const {
   constexpr double clear = 0.25;
-  const auto offset = [&](std::size_t k) {
-    return (recent_[k] - recent_[at]) * rate_hz_ -
-           (static_cast<double>(k) - static_cast<double>(at));
-  };
-  const auto is_long = [&](std::size_t k) {
-    return (recent_[k] - recent_[k - 1]) * rate_hz_ > longest_step;
-  };
-  std::array<double, nearby> offsets{};
-  const auto median_of = [&](std::size_t from, std::size_t end) {
-    for (std::size_t k = from; k < end; ++k) offsets[k - from] = offset(k);
-    return *median(View<double>(offsets).first(end - from));
-  };
-  double missing = -offset(at - 1);
+  double missing = -lateness(at - 1, at);
   if (std::abs(missing - std::round(missing)) > clear) {
     std::size_t first = at - 1, end = at + 1;
     while (first > 0 && at - first < nearby && !is_long(first)) --first;
     while (end < recent_.size() && end - at < nearby && !is_long(end)) ++end;
-    missing = median_of(at, end) - median_of(first, at);
+    missing = median_lateness(at, end, at) - median_lateness(first, at, at);
   }
-  const double in_all =
-      offset(std::min(at + nearby, recent_.size() - 1)) - offset(at - std::min(at, nearby));
+  const double in_all = lateness(std::min(at + nearby, recent_.size() - 1), at) -
+                        lateness(at - std::min(at, nearby), at);
   // Rounded up: the jitter of the outermost stamps must not hide a missing sample.
-  return std::max(0.0, std::min(std::round(missing), std::floor(in_all + 1.0 - clear)));
+  missing = std::max(0.0, std::min(std::round(missing), std::floor(in_all + 1.0 - clear)));
+  return missing > nearby ? missing_after_stall(at, missing) : missing;
+}
+
+// If the computer stalled, all rows of that time were stamped when it went on: the stamps that
+// follow are early. At most as many samples are missing as are still missing once as many rows have
+// followed, by the medians of up to `nearby` stamps, unless others are missing among these rows.
+double HoleFinder::missing_after_stall(std::size_t at, double missing) const {
+  const std::size_t last = std::min(at + needed_after(at), recent_.size()) - 1;
+  std::size_t from = at;
+  while (from + nearby < last + 1 && !is_long(from + 1)) ++from;
+  std::size_t end = from + 1;
+  while (end <= last && end - from < nearby && !is_long(end)) ++end;
+  const double remaining =
+      median_lateness(from, end, at) - median_lateness(at - std::min(at, nearby), at, at);
+  return std::clamp(std::round(remaining), 0.0, missing);
 }
 
 Status HoleFinder::check(std::size_t samples, double spare) const {

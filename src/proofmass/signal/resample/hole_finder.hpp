@@ -20,7 +20,7 @@ class HoleFinder {
     if (band_s > 0.0) band_.emplace(1.0 / rate_hz, band_s);
   }
   /// Maximum number of later rows needed to decide on a sample.
-  static constexpr std::size_t most_undecided = StampBand::ahead;
+  static constexpr std::size_t most_undecided = 4096;
 
   /// Appends the holes that are determined by now.
   void add(View<double> stamps_s, std::vector<Hole>& holes);
@@ -44,9 +44,14 @@ class HoleFinder {
 
  private:
   void decide(bool is_end, std::vector<Hole>& holes);
+  [[nodiscard]] bool is_long(std::size_t at) const;
+  [[nodiscard]] std::size_t needed_after(std::size_t at) const;
   void decide_by_band(bool is_end, std::vector<Hole>& holes);
   void count(double missing, std::vector<Hole>& holes);
+  [[nodiscard]] double lateness(std::size_t at, std::size_t than) const;
+  [[nodiscard]] double median_lateness(std::size_t from, std::size_t end, std::size_t than) const;
   [[nodiscard]] double missing_before(std::size_t at) const;
+  [[nodiscard]] double missing_after_stall(std::size_t at, double missing) const;
 
   double rate_hz_;
   std::optional<StampBand> band_;
