@@ -147,9 +147,10 @@ RateSession rate_session(const Recording& recording,
   Recording rates = own ? gyroscope_recording(command) : recording;
   if (own) expect_one_clock(rates, recording);
   const GyroscopeChannels channels = channels_in(rates, found.triad, own);
-  const std::vector<Note> saturated =
-      signal::drop_saturated({channels.begin(), channels.end()}, rates);
-  notes.insert(notes.end(), saturated.begin(), saturated.end());
+  const std::vector<std::size_t> axes(channels.begin(), channels.end());
+  for (const std::vector<Note>& dropped :
+       {signal::drop_stuck({axes}, rates), signal::drop_saturated(axes, rates)})
+    notes.insert(notes.end(), dropped.begin(), dropped.end());
   RateSession out;
   const std::array places{*found.triad.x, *found.triad.y, *found.triad.z};
   for (std::size_t k = 0; k < 3; ++k) {

@@ -195,7 +195,7 @@ FilePoses recording_poses(Recording recording,
 FilePoses poses_of(const std::string& file,
                    const CalibrateCommand& command,
                    std::vector<Note>& notes) {
-  Recording recording = load(file, command.input, progress_bar(command.output));
+  Recording recording = load_even(file, command.input, progress_bar(command.output));
   const bool means = command.means || io::looks_like_pose_table(recording) ||
                      (command.rests.empty() && io::is_plain_pose_table(recording));
   if (means) return table_poses(recording, command.input, notes);

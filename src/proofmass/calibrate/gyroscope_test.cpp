@@ -179,10 +179,25 @@ TEST(GyroscopeCalibration, LeavesOutAMotionWithMissingSamples) {
   std::mt19937_64 random(5);
   test::SimulatedRecording recording = test::simulate(test::drawn_gyroscope(random), {}, random);
   GyroscopeSession& session = recording.session;
-  session.rate[1][session.rests[3].last + 50] = std::nan("");
+  for (const std::size_t n : {50U, 51U, 52U})
+    session.rate[1][session.rests[3].last + n] = std::nan("");
   const GyroscopeCalibration fit = calibrated(recording);
   EXPECT_FALSE(fit.motions[3].used);
   EXPECT_EQ(fit.motions[3].why_unused, "samples are missing, or at the limit of the range");
+}
+
+TEST(GyroscopeCalibration, InterpolatesSingleMissingSamples) {
+  std::mt19937_64 random(5);
+  const test::GyroscopeTruth truth = test::drawn_gyroscope(random);
+  test::SimulatedRecording recording = test::simulate(truth, {}, random);
+  std::size_t k = 0;
+  for (auto* sensor : {&recording.session.rate, &recording.session.accel})
+    for (auto& axis : *sensor)
+      for (std::size_t n = 7 * ++k; n < axis.size(); n += 197) axis[n] = std::nan("");
+  const GyroscopeCalibration fit = calibrated(recording);
+  for (const MotionResidual& motion : fit.motions) EXPECT_TRUE(motion.used) << motion.why_unused;
+  for (Eigen::Index i = 0; i < 12; ++i)
+    EXPECT_LT(std::abs(fit.estimate(i) - truth.p(i)), 3.5 * std::sqrt(fit.covariance(i, i))) << i;
 }
 
 // Turns about the sensor's x axis alone say nothing of the y and z columns.

@@ -63,7 +63,7 @@ RestSearch find_rests(View<View<double>> axes, const RestOptions& options) {
   RestSearch search;
   search.window = blocks.window * blocks.block;
 
-  std::optional<RestNoise> noise = find_rest_noise(blocks);
+  std::optional<RestNoise> noise = find_noise_and_drop_stuck(blocks);
   if (!noise) {
     search.why_none = fmt::format(
         "{} usable samples are too few to distinguish the noise of the sensor from motion",
@@ -101,11 +101,8 @@ RestSearch find_rests(View<View<double>> axes, const RestOptions& options) {
 std::vector<Rest> stuck_intervals(View<View<double>> axes, const RestOptions& options) {
   RestBlocks blocks = blocks_of(axes, rest_lengths(options).window);
   const std::vector<RestRun> constant = constant_runs(blocks);
-  if (constant.empty()) return {};
-  drop_runs(constant, blocks);
-  // A sensor without noise is constant at rest.
-  const std::optional<RestNoise> noise = find_rest_noise(blocks);
-  if (!noise || noise->unrest >= 1.0 || !exceeds_quantum(blocks, *noise)) return {};
+  if (constant.empty() || !find_noise_and_drop_stuck(blocks)) return {};
+  if (blocks.count[constant.front().first] > 0.0) return {};
   const auto is_repeated = [&](std::size_t k) {
     return std::ranges::all_of(axes, [k](View<double> axis) { return axis[k] == axis[k - 1]; });
   };

@@ -49,16 +49,16 @@ struct RestSearch {
 /// equipments, ICRA (2014), whose static detector is given a first rest of known length.
 ///
 /// NaN, infinities and implausible values (is_plausible) on one axis count as missing on all; more
-/// than a window of them ends a rest, as does a value that is stuck for a window.
+/// than a window of them ends a rest, as does a value that is stuck for half a window.
 /// Errors: none; see `why_none`. Expects axes of equal length, rate_hz ≥ 0, shortest_s > 0.
 /// Cost: O(N log N), 6 ms for 51 175 samples of three axes; allocates about four doubles per
 /// sample.
 [[nodiscard]] RestSearch find_rests(View<View<double>> axes, const RestOptions& options);
 
-/// Intervals of half a second and more in which no axis changes, although the sensor has noise
-/// beyond its quantisation step where it rests otherwise: it was stuck, or its logger repeated the
-/// last sample.
-/// Expects what find_rests() does.
+/// Intervals of a quarter of a second and more in which no axis changes, although the sensor has
+/// noise beyond its quantisation step where it rests otherwise: it was stuck, or its logger
+/// repeated the last sample. None if they are a third of the recording: the sensor may have no
+/// noise then. Expects what find_rests() does.
 [[nodiscard]] std::vector<Rest> stuck_intervals(View<View<double>> axes,
                                                 const RestOptions& options);
 

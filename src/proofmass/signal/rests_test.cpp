@@ -334,6 +334,19 @@ TEST(Rests, AreNoneWhereOneReadingIsRepeated) {
   expect_rests(made.search().rests, made.rests, 15);
 }
 
+TEST(Rests, AreFoundWhereALoggerRepeatedSomeRows) {
+  Noise noise(18);
+  Session made = session(100.0, {6.0, 4.0, 4.0, 4.0, 4.0, 4.0}, noise);
+  made.add_noise(noise_std, noise);
+  // Windows that are constant in part are quieter than any rest.
+  for (std::size_t k = 0; k < made.rests.size(); ++k)
+    for (std::vector<double>& values : made.axis)
+      std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(made.rests[k].last - 50 - 40 * k),
+                  51 + 40 * k, values[made.rests[k].last - 50 - 40 * k]);
+  for (std::size_t k = 0; k < made.rests.size(); ++k) made.rests[k].last -= 50 + 40 * k;
+  expect_rests(made.search().rests, made.rests, 15);
+}
+
 TEST(Rests, SayWhyThereAreNone) {
   Session made;
   EXPECT_NE(made.search().why_none.find("0 usable samples are too few"), std::string::npos);

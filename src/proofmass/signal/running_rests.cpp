@@ -42,10 +42,10 @@ struct RunningRests::State {
 };
 
 void RunningRests::State::learn_noise() {
-  const RestBlocks& blocks = recent.blocks();
   constexpr std::size_t windows_to_begin = 6;
+  RestBlocks blocks = recent.blocks();
   if (!noise && blocks.size() < windows_to_begin * blocks.window) return;
-  std::optional<RestNoise> found = find_rest_noise(blocks);
+  std::optional<RestNoise> found = find_noise_and_drop_stuck(blocks);
   if (!found || !found->followed || found->unrest >= 1.0) return;
   const double rise = noise ? level_of(*found, axis_count) - level_of(*noise, axis_count) : 0.0;
   if (rise > std::log(1.5) && since_rest < RecentBlocks::most) return;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
+#include <span>
 
 #include "proofmass/calibrate/multi_position/dwell_noise.hpp"
 #include "proofmass/calibrate/multi_position/norm_model.hpp"
@@ -123,32 +125,83 @@ GyroscopeRest rest_of(const Pose& pose,
   return out;
 }
 
-// The samples of a motion, or why they cannot be integrated.
+// Usual step between the samples of a session, and how far single stamps are from an even one.
+struct Stepping {
+  double usual_s = 0.0, stamp_std_s = 0.0;
+};
+
+Stepping stepping_of(const std::vector<double>& time_s) {
+  std::vector<double> steps;
+  for (std::size_t n = 1; n < time_s.size(); ++n) steps.push_back(time_s[n] - time_s[n - 1]);
+  Stepping out{.usual_s = median(steps).value_or(0.0)};
+  Moments deviation;
+  for (const double step : steps)
+    if (std::abs(step - out.usual_s) < 0.5 * out.usual_s) deviation.add(step - out.usual_s);
+  // A late stamp makes one step longer and the next one shorter.
+  if (deviation.count > 1) out.stamp_std_s = deviation.std() / std::numbers::sqrt2;
+  return out;
+}
+
+struct Row {
+  double time_s;
+  Vector3d reading, force;
+};
+
+// The cubic through four rows.
+Row interpolated(std::span<const Row, 4> rows, double time_s) {
+  Row out{time_s, Vector3d::Zero(), Vector3d::Zero()};
+  for (std::size_t i = 0; i < 4; ++i) {
+    double weight = 1.0;
+    for (std::size_t j = 0; j < 4; ++j)
+      if (j != i) weight *= (time_s - rows[j].time_s) / (rows[i].time_s - rows[j].time_s);
+    out.reading += weight * rows[i].reading;
+    out.force += weight * rows[i].force;
+  }
+  return out;
+}
+
+// The samples of a motion, up to two missing ones interpolated, or why they cannot be integrated.
 std::string take_samples(const GyroscopeSession& session,
                          const MultiPosition& accelerometer,
                          std::size_t from,
-                         double usual_step_s,
+                         const Stepping& stepping,
                          MotionSamples& out) {
   const Parameters p(accelerometer.estimate.data());
-  const std::size_t first = session.rests[from].last, last = session.rests[from + 1].first;
-  for (std::size_t n = first; n <= last; ++n) {
-    const Vector3d reading = at(session.rate, n), accel = at(session.accel, n);
-    if (!reading.allFinite() || !accel.allFinite())
+  const Dwell &before = session.rests[from], &after = session.rests[from + 1];
+  const auto is_there = [&](std::size_t n) {
+    return at(session.rate, n).allFinite() && at(session.accel, n).allFinite();
+  };
+  std::size_t first = before.last, last = after.first;
+  while (first > before.first && !is_there(first)) --first;
+  while (last < after.last && !is_there(last)) ++last;
+  std::vector<Row> rows;
+  for (std::size_t n = first; n <= last; ++n)
+    if (is_there(n))
+      rows.push_back({session.time_s[n], at(session.rate, n), force_of(p, at(session.accel, n))});
+  if (rows.size() < 2) return "samples are missing, or at the limit of the range";
+  out.stamp_std_s = stepping.stamp_std_s;
+  const auto add = [&out](const Row& row, double step_s) {
+    out.step_s.push_back(step_s);
+    out.reading.push_back(row.reading);
+    out.force.push_back(row.force);
+  };
+  out.reading.push_back(rows.front().reading);
+  out.force.push_back(rows.front().force);
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const double step_s = rows[k].time_s - rows[k - 1].time_s;
+    if (!(step_s > 0.0)) return "its times do not increase";
+    if (step_s > gap_steps * stepping.usual_s)
       return "samples are missing, or at the limit of the range";
-    out.reading.push_back(reading);
-    out.force.push_back(force_of(p, accel));
-    if (n == first) continue;
-    out.step_s.push_back(session.time_s[n] - session.time_s[n - 1]);
-    if (!(out.step_s.back() > 0.0)) return "its times do not increase";
-    if (out.step_s.back() > gap_steps * usual_step_s) return "samples are missing";
+    // At the ends, the sensor is at rest.
+    const bool is_inside = k > 1 && k + 1 < rows.size();
+    const double parts = is_inside ? std::max(1.0, std::round(step_s / stepping.usual_s)) : 1.0;
+    for (double part = 1.0; part < parts; part += 1.0)
+      add(interpolated(std::span<const Row, 4>(&rows[k - 2], 4),
+                       rows[k - 1].time_s + step_s * part / parts),
+          step_s / parts);
+    add(rows[k], step_s / parts);
   }
   return {};
-}
-
-double usual_step_s(const std::vector<double>& time_s) {
-  std::vector<double> steps;
-  for (std::size_t n = 1; n < time_s.size(); ++n) steps.push_back(time_s[n] - time_s[n - 1]);
-  return median(steps).value_or(0.0);
 }
 
 // Readings less the mean of the two rests: the bias there, with what Earth's rotation adds to both.
@@ -166,7 +219,7 @@ void add_motions(const GyroscopeSession& session,
                  const MultiPosition& accelerometer,
                  const SessionNoiseOfRate& noise,
                  GyroscopeData& data) {
-  const double step_s = usual_step_s(session.time_s);
+  const Stepping stepping = stepping_of(session.time_s);
   const std::size_t base = data.rests.size() - session.rests.size();
   for (std::size_t k = 0; k + 1 < session.rests.size(); ++k) {
     MotionResidual& listed = data.residuals.emplace_back();
@@ -175,7 +228,7 @@ void add_motions(const GyroscopeSession& session,
     listed.start_s = session.time_s[session.rests[k].last];
     listed.end_s = session.time_s[session.rests[k + 1].first];
     GyroscopeMotion motion{.samples = {}, .from = base + k, .to = base + k + 1, .noise_axes = {}};
-    listed.why_unused = take_samples(session, accelerometer, k, step_s, motion.samples);
+    listed.why_unused = take_samples(session, accelerometer, k, stepping, motion.samples);
     listed.used = listed.why_unused.empty();
     if (!listed.used) continue;
     subtract_rests(data.rests[motion.from], data.rests[motion.to], motion.samples);
@@ -234,7 +287,7 @@ void add_rests(const GyroscopeSession& session,
     rest.session = index;
     rest.span_s = {session.time_s[session.rests[k].first], session.time_s[session.rests[k].last]};
   }
-  const double step_s = usual_step_s(session.time_s);
+  const double step_s = stepping_of(session.time_s).usual_s;
   for (Index axis = 0; axis < 3; ++axis)
     data.white(axis) =
         std::max(data.white(axis), noise.axis[static_cast<std::size_t>(axis)].white * step_s);

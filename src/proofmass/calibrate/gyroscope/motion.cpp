@@ -43,6 +43,8 @@ MotionRotation integrate(const MotionSamples& motion,
     }
     out.by_rate += middle;
     out.noise += middle * noise_of_rate * middle.transpose() / dt;
+    const Vector3d shifted = motion.stamp_std_s / dt * (middle * (w1 - w0));
+    out.noise += shifted * shifted.transpose();
     out.turned_rad += phi.norm();
     P = P * rotation_by(phi).transpose();
   }

@@ -12,6 +12,7 @@ struct MotionSamples {
   std::vector<double> step_s;            ///< from sample n to n + 1
   std::vector<Eigen::Vector3d> reading;  ///< gyroscope less the mean of the adjacent rests
   std::vector<Eigen::Vector3d> force;    ///< specific force less the mean of the rests, m/s^2
+  double stamp_std_s = 0.0;              ///< jitter of the stamps
 
   [[nodiscard]] double duration_s() const;
 };
@@ -24,7 +25,9 @@ struct MotionRotation {
   Eigen::Matrix<double, 3, 9> by_matrix;  ///< δφ per δA, row by row
   Eigen::Matrix<double, 3, 9> by_g;       ///< δφ per δG, row by row
   Eigen::Matrix3d by_rate;                ///< δφ per constant δω
-  Eigen::Matrix3d noise;  ///< covariance of δφ by white noise, Σ Pₙ A diag(N²) Aᵀ Pₙᵀ dt
+  /// Covariance of δφ by white noise, Σ Pₙ A diag(N²) Aᵀ Pₙᵀ dt, and by the jitter τ of the stamps,
+  /// each of which shifts the change of the rate from one step to the next: Σ Pₙ Δωₙ Δωₙᵀ Pₙᵀ τ².
+  Eigen::Matrix3d noise;
   double turned_rad = 0.0;
 };
 

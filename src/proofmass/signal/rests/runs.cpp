@@ -160,6 +160,10 @@ void clean_outliers(View<View<double>> axes, RestBlocks& blocks, const RestNoise
   }
 }
 
+namespace {
+
+// True if the noise exceeds the quantisation step on any axis: such a sensor repeats no value for
+// half a window.
 bool exceeds_quantum(const RestBlocks& blocks, const RestNoise& noise) {
   bool noisy = false;
   for (std::size_t a = 0; a < blocks.axes; ++a)
@@ -167,6 +171,13 @@ bool exceeds_quantum(const RestBlocks& blocks, const RestNoise& noise) {
                                                          4.0 * blocks.variance_floor[a]);
   return noisy;
 }
+
+void drop_runs(const std::vector<RestRun>& runs, RestBlocks& blocks) {
+  for (const RestRun& run : runs)
+    for (std::size_t b = run.first; b < run.end; ++b) blocks.count[b] = 0.0;
+}
+
+}  // namespace
 
 std::vector<RestRun> constant_runs(const RestBlocks& blocks) {
   std::vector<RestRun> runs;
@@ -181,15 +192,26 @@ std::vector<RestRun> constant_runs(const RestBlocks& blocks) {
       ++run;
       continue;
     }
-    if (run >= blocks.window) runs.push_back({k - run, k});
+    if (2 * run >= blocks.window) runs.push_back({k - run, k});
     run = 0;
   }
   return runs;
 }
 
-void drop_runs(const std::vector<RestRun>& runs, RestBlocks& blocks) {
-  for (const RestRun& run : runs)
-    for (std::size_t b = run.first; b < run.end; ++b) blocks.count[b] = 0.0;
+std::optional<RestNoise> find_noise_and_drop_stuck(RestBlocks& blocks) {
+  const std::vector<RestRun> constant = constant_runs(blocks);
+  std::size_t repeated = 0;
+  for (const RestRun& run : constant) repeated += run.size();
+  if (repeated > 0 && 3 * repeated < blocks.size()) {
+    RestBlocks others = blocks;
+    drop_runs(constant, others);
+    std::optional<RestNoise> noise = find_rest_noise(others);
+    if (noise && noise->unrest < 1.0 && exceeds_quantum(others, *noise)) {
+      blocks = std::move(others);
+      return noise;
+    }
+  }
+  return find_rest_noise(blocks);
 }
 
 void drop_stuck(RestBlocks& blocks, const RestNoise& noise) {

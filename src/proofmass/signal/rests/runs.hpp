@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "proofmass/signal/rests/blocks.hpp"
@@ -29,18 +30,15 @@ struct QuietTest {
 /// Removes one outlier from each block that is quiet without it.
 void clean_outliers(View<View<double>> axes, RestBlocks& blocks, const RestNoise& noise);
 
-/// Windows that repeat one value.
+/// Runs of half a window and more that repeat one value.
 [[nodiscard]] std::vector<RestRun> constant_runs(const RestBlocks& blocks);
 
-/// True if the noise exceeds the quantisation step on any axis: a sensor of such noise repeats no
-/// value for a window.
-[[nodiscard]] bool exceeds_quantum(const RestBlocks& blocks, const RestNoise& noise);
+/// The noise of the sensor, without blocks in which it was stuck (constant_runs()): they are
+/// excluded from `blocks`, unless they are a third of them or the sensor's noise does not exceed
+/// its quantisation step, since it may then be constant at rest.
+[[nodiscard]] std::optional<RestNoise> find_noise_and_drop_stuck(RestBlocks& blocks);
 
-/// Excludes the blocks of these runs.
-void drop_runs(const std::vector<RestRun>& runs, RestBlocks& blocks);
-
-/// Excludes windows that repeat one value although the sensor's noise exceeds the quantisation
-/// step.
+/// Excludes runs that repeat one value although the sensor's noise exceeds the quantisation step.
 void drop_stuck(RestBlocks& blocks, const RestNoise& noise);
 
 /// Runs of blocks that are quiet, individually and in windows. More than a window of consecutive
