@@ -1,4 +1,5 @@
 // Properties of the estimate of a vehicle's path, by the simulator that shares no formula with it.
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -96,6 +97,59 @@ TEST(Drive, ConvergesWithFixesAndNoDimensionKnown) {
     EXPECT_NEAR(solved->distance_m->value, world.truth.distance_m, 4.0 * solved->distance_m->std)
         << seed;
     EXPECT_LT(solved->distance_m->std, 0.02 * world.truth.distance_m) << seed;
+  }
+}
+
+double largest(const std::vector<double>& values) {
+  double most = 0.0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
+}
+
+// Without the rows in which the axis along the axle was saturated, the heading was up to 190
+// standard deviations off: those in the plane of the wheel measure the yaw, and do so in all rows.
+TEST(Drive, NeedsNoRateAlongTheAxle) {
+  Scenario scenario{.name = "saturated"};
+  scenario.duration_s = 40.0;
+  for (std::uint64_t seed = 9341; seed < 9343; ++seed) {
+    World world = make_world(scenario, seed);
+    const auto whole = solve(world);
+    ASSERT_TRUE(whole.has_value()) << whole.error().message;
+    for (estimate::DriveWheel& wheel : world.wheels) {
+      auto& spin = *std::ranges::max_element(wheel.sensor.rate_radps, {}, largest);
+      auto& radial = wheel.sensor.accel_mps2[0];
+      const double limit = 0.6 * largest(spin), limit_mps2 = 0.8 * largest(radial);
+      for (double& rate : spin)
+        if (std::abs(rate) > limit) rate = std::nan("");
+      for (double& accel : radial)
+        if (std::abs(accel) > limit_mps2) accel = std::nan("");
+    }
+    const auto solved = solve(world);
+    ASSERT_TRUE(solved.has_value()) << solved.error().message;
+    const Uncertain heading = *solved->heading_change_rad;
+    EXPECT_NEAR(heading.value, world.truth.heading_change_rad, 3.0 * heading.std) << seed;
+    EXPECT_LT(heading.std, 1.2 * whole->heading_change_rad->std) << seed;
+  }
+}
+
+TEST(Drive, WidensTheHeadingWhereTheFramesRatesAreMissing) {
+  Scenario scenario{.name = "encoder-gap"};
+  scenario.gyroscopes = scenario.track_known = false;
+  scenario.frame = scenario.encoders = true;
+  for (std::uint64_t seed = 9351; seed < 9354; ++seed) {
+    World world = make_world(scenario, seed);
+    const auto whole = solve(world);
+    ASSERT_TRUE(whole.has_value()) << whole.error().message;
+    estimate::WheelSensor& frame = world.frame->sensor;
+    const double middle_s = 0.5 * (frame.time_s.front() + frame.time_s.back());
+    for (auto& axis : frame.rate_radps)
+      for (std::size_t k = 0; k < axis.size(); ++k)
+        if (std::abs(frame.time_s[k] - middle_s) < 2.0) axis[k] = std::nan("");
+    const auto solved = solve(world);
+    ASSERT_TRUE(solved.has_value()) << solved.error().message;
+    const Uncertain heading = *solved->heading_change_rad;
+    EXPECT_NEAR(heading.value, world.truth.heading_change_rad, 3.0 * heading.std) << seed;
+    EXPECT_GE(heading.std, whole->heading_change_rad->std) << seed;
   }
 }
 

@@ -12,6 +12,7 @@
 #include "proofmass/estimate/drive/findings.hpp"
 #include "proofmass/estimate/drive/fit.hpp"
 #include "proofmass/estimate/drive/steering.hpp"
+#include "proofmass/estimate/drive/yaw.hpp"
 
 namespace proofmass::estimate {
 namespace {

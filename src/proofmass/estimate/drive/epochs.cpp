@@ -61,6 +61,19 @@ StepRates rates_of(const Epoch& epoch, const Epoch* before, const Vehicle& vehic
   return rates;
 }
 
+double offset_s(const Vehicle& vehicle, std::size_t sensor) {
+  return vehicle.offset_s[static_cast<std::size_t>(vehicle.clock[sensor])];
+}
+
+// Variance that the integrated yaw rate gains in the step to an epoch.
+double yaw_variance_rad2(const Trace& trace, double offset_s, const Epoch& epoch) {
+  const double walk = trace.yaw_walk_rad2ps * epoch.dt_s;
+  if (trace.yaw_gap_rad2.empty()) return walk;
+  const double t = epoch.time_s + offset_s;
+  return walk + at_time(trace.time_s, trace.yaw_gap_rad2, t) -
+         at_time(trace.time_s, trace.yaw_gap_rad2, t - epoch.dt_s);
+}
+
 // Direction of travel in the step to each epoch. Standing wheels add no noise to the yaw.
 void add_direction(const Recorded& recorded, const Vehicle& vehicle, std::vector<Epoch>& epochs) {
   const Epoch* before = nullptr;
@@ -72,10 +85,11 @@ void add_direction(const Recorded& recorded, const Vehicle& vehicle, std::vector
       epoch.moving_s = before->moving_s + (epoch.direction == 0 ? 0.0 : epoch.dt_s);
     before = &epoch;
     if (epoch.direction == 0) continue;
-    for (std::size_t i = 0; i < recorded.wheels.size(); ++i)
-      epoch.yaw_walk_rad2[i] = recorded.wheels[i].yaw_walk_rad2ps * epoch.dt_s;
-    if (recorded.frame)
-      epoch.yaw_walk_rad2[most_drive_wheels] = recorded.frame->yaw_walk_rad2ps * epoch.dt_s;
+    const auto add = [&](const Trace& trace, std::size_t gyro) {
+      epoch.yaw_walk_rad2[gyro] = yaw_variance_rad2(trace, offset_s(vehicle, gyro), epoch);
+    };
+    for (std::size_t i = 0; i < recorded.wheels.size(); ++i) add(recorded.wheels[i], i);
+    if (recorded.frame) add(*recorded.frame, most_drive_wheels);
   }
 }
 
@@ -108,15 +122,12 @@ std::vector<Epoch> epochs_of(const Recorded& recorded, const Vehicle& vehicle) {
     epochs[k].angle_rad.fill(missing);
     epochs[k].yaw_rad.fill(missing);
   }
-  const auto offset_of = [&](std::size_t sensor) {
-    return vehicle.offset_s[static_cast<std::size_t>(vehicle.clock[sensor])];
-  };
   for (std::size_t i = 0; i < recorded.wheels.size(); ++i) {
-    add_wheel(recorded.wheels[i], offset_of(i), i, epochs);
-    add_yaw(recorded.wheels[i], offset_of(i), i, epochs);
+    add_wheel(recorded.wheels[i], offset_s(vehicle, i), i, epochs);
+    add_yaw(recorded.wheels[i], offset_s(vehicle, i), i, epochs);
   }
   if (recorded.frame)
-    add_yaw(*recorded.frame, offset_of(most_drive_wheels), most_drive_wheels, epochs);
+    add_yaw(*recorded.frame, offset_s(vehicle, most_drive_wheels), most_drive_wheels, epochs);
   add_direction(recorded, vehicle, epochs);
   if (recorded.fixes)
     add_fixes(*recorded.fixes, vehicle.offset_s[static_cast<std::size_t>(vehicle.fix_clock)],

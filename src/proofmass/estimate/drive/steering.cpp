@@ -70,7 +70,10 @@ void warn_of_steering(const std::vector<DriveWheel>& wheels,
       const double first = a.yaw_rad.back() - a.yaw_rad.front();
       const double second = b.yaw_rad.back() - b.yaw_rad.front();
       const double span_s = a.time_s.back() - a.time_s.front();
-      const double walk_rad = std::sqrt((a.yaw_walk_rad2ps + b.yaw_walk_rad2ps) * span_s);
+      double walk_rad2 = (a.yaw_walk_rad2ps + b.yaw_walk_rad2ps) * span_s;
+      for (const Trace* trace : {&a, &b})
+        if (!trace->yaw_gap_rad2.empty()) walk_rad2 += trace->yaw_gap_rad2.back();
+      const double walk_rad = std::sqrt(walk_rad2);
       if (std::abs(first - second) < 0.05 + 0.04 * std::abs(first) + 3.0 * walk_rad) continue;
       solution.notes.push_back(
           {Severity::warning,

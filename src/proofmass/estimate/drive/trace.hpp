@@ -15,6 +15,8 @@ struct Trace {
   /// Integrated yaw rate, a left turn positive; empty without a gyroscope. A steered wheel's
   /// includes its steering.
   std::vector<double> yaw_rad;
+  /// Variance up to each time by rates that are missing in motion, and interpolated; empty: none.
+  std::vector<double> yaw_gap_rad2;
   double yaw_walk_rad2ps = 0.0;     ///< variance that the noise of the yaw rate adds in a second
   double yaw_bias_std_radps = 0.0;  ///< constant part of its error, while the vehicle moves
   double spin_tilt_rad = 0.0;       ///< of the gyroscope's spin axis against the sensor's nearest
@@ -27,13 +29,9 @@ struct Trace {
 /// estimate_wheel, not_observable (the count of turns is ambiguous).
 [[nodiscard]] Result<Trace> trace_wheel(const DriveWheel& wheel, const WheelOptions& options);
 
-/// Yaw of the frame: its rate along the mean specific force, less the bias at rest. `rests` are the
-/// intervals, on the frame's clock, in which the wheels stand. Errors: invalid_argument (no
-/// gyroscope), not_observable (no rest of a second: the bias is unknown).
-[[nodiscard]] Result<Trace> trace_frame(const WheelSensor& sensor,
-                                        const std::vector<Stretch>& rests);
+inline constexpr double standing_radps = 0.05;  ///< slower, a wheel is taken to stand
 
-/// Intervals of at least `least_s` in which a wheel turns slower than 0.05 rad/s.
+/// Intervals of at least `least_s` in which a wheel turns slower than standing_radps.
 [[nodiscard]] std::vector<Stretch> rests_of(const Trace& wheel, double least_s);
 
 /// The wheel turned over: angle and speed change sign, the yaw does not.
