@@ -69,6 +69,24 @@ TEST(Motor, WithoutACurrentFindsTheRatios) {
   expect_absent(found, "coulomb_friction");
 }
 
+// The voltage was integrated over the gap, in which it was not recorded: the torque constant was up
+// to five standard deviations off.
+TEST(Motor, IntegratesOverNoGap) {
+  const TrueDrive drive;
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    MotorRecord record = simulated(drive, {}, exploring, seed);
+    // The clock is set forward.
+    for (double& t : record.time_s)
+      if (t > 17.0) t += 12.0;
+    const MotorSolution found = estimate_motor(record).value();
+    expect_found(found, "resistance", drive.resistance, 0.03);
+    expect_found(found, "torque_constant", drive.torque_constant, 0.01);
+    expect_found(found, "inertia", drive.inertia(), 0.1);
+    expect_found(found, "coulomb_friction", drive.total_coulomb(), 0.1);
+    expect_found(found, "backlash", drive.backlash, 0.1);
+  }
+}
+
 TEST(Motor, WithoutAReversalTheBacklashIsNotDetermined) {
   const Voltage forwards = [](double t) { return 22.0 + 8.0 * std::sin(1.7 * t); };
   const MotorSolution found =

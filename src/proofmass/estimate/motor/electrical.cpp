@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/motor/angle_errors.hpp"
 
 namespace proofmass::estimate::motor {
@@ -95,6 +97,19 @@ void set_priors(const Series& series,
   std(half_backlash) = 0.05;
 }
 
+// Shifts the model's angle to the mean of the measured one, in each part between gaps.
+void level_with(const Series& series, const Motion& motion, std::vector<double>& angle_rad) {
+  for (std::size_t first = 0; first < series.size();) {
+    std::size_t end = first;
+    Moments offset;
+    for (; end < series.size() && (end == first || series.bridged[end] == series.bridged[first]);
+         ++end)
+      if (motion.contact[end] != 0) offset.add(series.angle_rad[end] - angle_rad[end]);
+    for (std::size_t k = first; k < end && offset.count > 0; ++k) angle_rad[k] += offset.mean;
+    first = end;
+  }
+}
+
 }  // namespace
 
 double resistance_per_constant(const Series& series, const Motion& motion) {
@@ -127,8 +142,12 @@ ElectricalFit fit_electrical(const Series& series,
   set_priors(series, motion, resistance_per_constant, regression);
   errors.set_priors(regression.prior_std.tail(errors.count()));
   Index row = 0;
+  bool over_gap = false;  // the integrals over it are unknown
   for (std::size_t k = 0; k < series.size(); ++k) {
+    over_gap = over_gap || series.bridged[k];
     if (motion.contact[k] == 0) continue;
+    if (std::exchange(over_gap, false) && row > 0)
+      regression.starts.push_back(static_cast<std::size_t>(row));
     auto column = regression.columns.col(row++);
     column.head(electrical_count) = terms.angle.row(static_cast<Index>(k)).transpose();
     column(half_backlash) = -motion.contact[k];
@@ -146,14 +165,10 @@ ElectricalFit fit_electrical(const Series& series,
       .correlation = found.correlation,
       .speed_terms = terms.speed};
   const VectorXd angle = terms.angle * out.value;
-  double offset = 0.0;
-  for (std::size_t k = 0; k < series.size(); ++k) {
+  for (std::size_t k = 0; k < series.size(); ++k)
     out.load_angle_rad.push_back(angle(static_cast<Index>(k)) -
                                  motion.contact[k] * out.half_backlash_rad);
-    if (motion.contact[k] != 0)
-      offset += (series.angle_rad[k] - out.load_angle_rad[k]) / static_cast<double>(used);
-  }
-  for (double& load : out.load_angle_rad) load += offset;
+  level_with(series, motion, out.load_angle_rad);
   const std::vector<double> level = smoothed_level(regression, found);
   for (std::size_t k = 0, last = 0; k < series.size(); ++k) {
     while (last + 1 < level.size() && regression.time_s[last + 1] <= series.time_s(k)) ++last;

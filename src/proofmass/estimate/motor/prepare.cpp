@@ -73,6 +73,17 @@ std::vector<double> on_grid(const std::vector<double>& t,
   return out;
 }
 
+// The samples of the even grid that lie within longer steps than of two missing rows, by blocks.
+std::vector<bool> bridged_on_grid(const std::vector<double>& t, double step_s, std::size_t block) {
+  constexpr double longest_step = 3.5;
+  std::vector<double> gaps(t.size(), 0.0);
+  for (std::size_t k = 1; k < t.size(); ++k)
+    if (t[k] - t[k - 1] > longest_step * step_s) gaps[k - 1] = gaps[k] = 1.0;
+  std::vector<bool> bridged;
+  for (const double share : on_grid(t, gaps, step_s, block)) bridged.push_back(share > 0.0);
+  return bridged;
+}
+
 Result<std::vector<double>> load_angle(const MotorRecord& record,
                                        const std::vector<std::size_t>& rows,
                                        double gravity_mps2) {
@@ -118,6 +129,7 @@ Result<Series> prepare(const MotorRecord& record, const MotorOptions& options) {
                 .voltage_v = on_grid(time_s, rows_of(record.voltage_v, rows), step_s, block),
                 .current_a = on_grid(time_s, rows_of(record.current_a, rows), step_s, block),
                 .angle_rad = on_grid(time_s, *angle, step_s, block),
+                .bridged = bridged_on_grid(time_s, step_s, block),
                 .from_gravity = record.angle_rad.empty(),
                 .gravity_mps2 = options.gravity_mps2};
   if (series.size() < least_samples)

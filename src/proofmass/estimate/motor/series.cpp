@@ -134,8 +134,9 @@ Motion motion_of_load(const Series& series) {
   const double std_radps = slope_noise(half) * sample_noise(series.angle_rad) / series.step_s;
   motion.rest_radps = std::max(noise_factor * std_radps, least_share * motion.top_radps());
   // The flank on which the motor drives the load, once the load has moved one way for settle_s.
-  for (const double w : motion.speed_radps)
-    motion.contact.push_back(direction(w, motion.rest_radps));
+  for (std::size_t k = 0; k < series.size(); ++k)
+    motion.contact.push_back(
+        series.bridged[k] ? std::int8_t{0} : direction(motion.speed_radps[k], motion.rest_radps));
   shorten_runs(motion.contact, std::max(samples_in(settle_s, series.step_s), half + 1));
   return motion;
 }
@@ -160,7 +161,7 @@ Motion motion_of_motor(const Series& series,
     const bool moves = std::abs(motion.speed_radps[k]) > motion.rest_radps;
     const bool bears = (pushed - pushed_rad) * motion.speed_radps[k] > 0.0;
     pushed_rad = pushed;
-    bearing = moves && bears ? bearing + 1 : 0;
+    bearing = moves && bears && !series.bridged[k] ? bearing + 1 : 0;
     if (bearing > margin) motion.contact[k] = direction(motion.speed_radps[k], motion.rest_radps);
   }
   shorten_runs(motion.contact, half + 1);

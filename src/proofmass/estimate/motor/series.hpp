@@ -12,7 +12,9 @@ struct Series {
   std::vector<double> voltage_v;
   std::vector<double> current_a;  ///< smoothed() over 50 ms; empty: not measured
   std::vector<double> angle_rad;  ///< of the load, unwrapped, positive with the voltage
-  bool from_gravity = false;      ///< the angle comes from accelerometers
+  /// Whether a sample is interpolated over a gap of the recording, of unknown motion.
+  std::vector<bool> bridged;
+  bool from_gravity = false;  ///< the angle comes from accelerometers
   double gravity_mps2 = 0.0;
 
   [[nodiscard]] std::size_t size() const { return angle_rad.size(); }
