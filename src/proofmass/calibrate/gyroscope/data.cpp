@@ -160,14 +160,11 @@ Row interpolated(std::span<const Row, 4> rows, double time_s) {
   return out;
 }
 
-// The samples of a motion, up to two missing ones interpolated, or why they cannot be integrated.
-std::string take_samples(const GyroscopeSession& session,
-                         const MultiPosition& accelerometer,
-                         std::size_t from,
-                         const Stepping& stepping,
-                         MotionSamples& out) {
-  const Parameters p(accelerometer.estimate.data());
-  const Dwell &before = session.rests[from], &after = session.rests[from + 1];
+// The samples with a value of every axis from one rest to the next.
+std::vector<Row> rows_between(const GyroscopeSession& session,
+                              const Parameters& accelerometer,
+                              const Dwell& before,
+                              const Dwell& after) {
   const auto is_there = [&](std::size_t n) {
     return at(session.rate, n).allFinite() && at(session.accel, n).allFinite();
   };
@@ -177,29 +174,49 @@ std::string take_samples(const GyroscopeSession& session,
   std::vector<Row> rows;
   for (std::size_t n = first; n <= last; ++n)
     if (is_there(n))
-      rows.push_back({session.time_s[n], at(session.rate, n), force_of(p, at(session.accel, n))});
-  if (rows.size() < 2) return "samples are missing, or at the limit of the range";
-  out.stamp_std_s = stepping.stamp_std_s;
-  const auto add = [&out](const Row& row, double step_s) {
-    out.step_s.push_back(step_s);
+      rows.push_back(
+          {session.time_s[n], at(session.rate, n), force_of(accelerometer, at(session.accel, n))});
+  return rows;
+}
+
+// Adds row k, and interpolated ones where rows are missing before it.
+void add_row(const std::vector<Row>& rows,
+             std::size_t k,
+             const Stepping& stepping,
+             MotionSamples& out) {
+  const double step_s = rows[k].time_s - rows[k - 1].time_s;
+  // At the ends, the sensor is at rest.
+  const bool is_inside = k > 1 && k + 1 < rows.size();
+  const double parts = is_inside ? std::max(1.0, std::round(step_s / stepping.usual_s)) : 1.0;
+  const auto add = [&](const Row& row) {
+    out.step_s.push_back(step_s / parts);
     out.reading.push_back(row.reading);
     out.force.push_back(row.force);
   };
+  for (double part = 1.0; part < parts; part += 1.0)
+    add(interpolated(std::span<const Row, 4>(&rows[k - 2], 4),
+                     rows[k - 1].time_s + step_s * part / parts));
+  add(rows[k]);
+}
+
+// The samples of a motion, up to two missing ones interpolated, or why they cannot be integrated.
+std::string take_samples(const GyroscopeSession& session,
+                         const MultiPosition& accelerometer,
+                         std::size_t from,
+                         const Stepping& stepping,
+                         MotionSamples& out) {
+  constexpr auto missing = "samples are missing, or at the limit of the range";
+  const std::vector<Row> rows = rows_between(session, Parameters(accelerometer.estimate.data()),
+                                             session.rests[from], session.rests[from + 1]);
+  if (rows.size() < 2) return missing;
+  out.stamp_std_s = stepping.stamp_std_s;
   out.reading.push_back(rows.front().reading);
   out.force.push_back(rows.front().force);
   for (std::size_t k = 1; k < rows.size(); ++k) {
     const double step_s = rows[k].time_s - rows[k - 1].time_s;
     if (!(step_s > 0.0)) return "its times do not increase";
-    if (step_s > gap_steps * stepping.usual_s)
-      return "samples are missing, or at the limit of the range";
-    // At the ends, the sensor is at rest.
-    const bool is_inside = k > 1 && k + 1 < rows.size();
-    const double parts = is_inside ? std::max(1.0, std::round(step_s / stepping.usual_s)) : 1.0;
-    for (double part = 1.0; part < parts; part += 1.0)
-      add(interpolated(std::span<const Row, 4>(&rows[k - 2], 4),
-                       rows[k - 1].time_s + step_s * part / parts),
-          step_s / parts);
-    add(rows[k], step_s / parts);
+    if (step_s > gap_steps * stepping.usual_s) return missing;
+    add_row(rows, k, stepping, out);
   }
   return {};
 }

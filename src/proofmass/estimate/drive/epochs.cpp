@@ -74,6 +74,14 @@ double yaw_variance_rad2(const Trace& trace, double offset_s, const Epoch& epoch
          at_time(trace.time_s, trace.yaw_gap_rad2, t - epoch.dt_s);
 }
 
+void set_yaw_variance(const Recorded& recorded, const Vehicle& vehicle, Epoch& epoch) {
+  const auto set = [&](const Trace& trace, std::size_t gyro) {
+    epoch.yaw_walk_rad2[gyro] = yaw_variance_rad2(trace, offset_s(vehicle, gyro), epoch);
+  };
+  for (std::size_t i = 0; i < recorded.wheels.size(); ++i) set(recorded.wheels[i], i);
+  if (recorded.frame) set(*recorded.frame, most_drive_wheels);
+}
+
 // Direction of travel in the step to each epoch. Standing wheels add no noise to the yaw.
 void add_direction(const Recorded& recorded, const Vehicle& vehicle, std::vector<Epoch>& epochs) {
   const Epoch* before = nullptr;
@@ -84,12 +92,7 @@ void add_direction(const Recorded& recorded, const Vehicle& vehicle, std::vector
     if (before != nullptr)
       epoch.moving_s = before->moving_s + (epoch.direction == 0 ? 0.0 : epoch.dt_s);
     before = &epoch;
-    if (epoch.direction == 0) continue;
-    const auto add = [&](const Trace& trace, std::size_t gyro) {
-      epoch.yaw_walk_rad2[gyro] = yaw_variance_rad2(trace, offset_s(vehicle, gyro), epoch);
-    };
-    for (std::size_t i = 0; i < recorded.wheels.size(); ++i) add(recorded.wheels[i], i);
-    if (recorded.frame) add(*recorded.frame, most_drive_wheels);
+    if (epoch.direction != 0) set_yaw_variance(recorded, vehicle, epoch);
   }
 }
 

@@ -59,22 +59,24 @@ void set_geometry(const std::vector<DriveWheel>& wheels,
   setting.base_m = any ? options.wheelbase_m.value_or(usual_base_m) : Uncertain{};
 }
 
-// Wheels whose gyroscopes turned by different angles: one of them steers.
+// Whether the gyroscopes of two wheels turned by different angles: one of them steers.
+bool turned_differently(const Trace& a, const Trace& b) {
+  if (a.yaw_rad.empty() || b.yaw_rad.empty()) return false;
+  const double first = a.yaw_rad.back() - a.yaw_rad.front();
+  const double second = b.yaw_rad.back() - b.yaw_rad.front();
+  const double span_s = a.time_s.back() - a.time_s.front();
+  double walk_rad2 = (a.yaw_walk_rad2ps + b.yaw_walk_rad2ps) * span_s;
+  for (const Trace* trace : {&a, &b})
+    if (!trace->yaw_gap_rad2.empty()) walk_rad2 += trace->yaw_gap_rad2.back();
+  return std::abs(first - second) >= 0.05 + 0.04 * std::abs(first) + 3.0 * std::sqrt(walk_rad2);
+}
+
 void warn_of_steering(const std::vector<DriveWheel>& wheels,
                       const std::vector<Trace>& traces,
                       DriveSolution& solution) {
   for (std::size_t i = 0; i < traces.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const Trace &a = traces[i], &b = traces[j];
-      if (a.yaw_rad.empty() || b.yaw_rad.empty()) continue;
-      const double first = a.yaw_rad.back() - a.yaw_rad.front();
-      const double second = b.yaw_rad.back() - b.yaw_rad.front();
-      const double span_s = a.time_s.back() - a.time_s.front();
-      double walk_rad2 = (a.yaw_walk_rad2ps + b.yaw_walk_rad2ps) * span_s;
-      for (const Trace* trace : {&a, &b})
-        if (!trace->yaw_gap_rad2.empty()) walk_rad2 += trace->yaw_gap_rad2.back();
-      const double walk_rad = std::sqrt(walk_rad2);
-      if (std::abs(first - second) < 0.05 + 0.04 * std::abs(first) + 3.0 * walk_rad) continue;
+      if (!turned_differently(traces[i], traces[j])) continue;
       solution.notes.push_back(
           {Severity::warning,
            wheels[i].sensor.name + " and " + wheels[j].sensor.name +

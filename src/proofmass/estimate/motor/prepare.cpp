@@ -28,18 +28,21 @@ Status check(const MotorRecord& record) {
   return Done{};
 }
 
-// Rows with a value in every column that is used.
+// Whether a row has a value in every column that is used.
+bool is_whole(const MotorRecord& record, std::size_t row) {
+  const auto has = [row](const std::vector<double>& column) {
+    return column.empty() || std::isfinite(column[row]);
+  };
+  if (!has(record.voltage_v) || !has(record.current_a) || !has(record.angle_rad)) return false;
+  return !record.angle_rad.empty() ||
+         std::ranges::all_of(record.accel_mps2,
+                             [&](const auto& sensor) { return std::ranges::all_of(sensor, has); });
+}
+
 std::vector<std::size_t> whole_rows(const MotorRecord& record) {
   std::vector<std::size_t> rows;
-  for (std::size_t k = 0; k < record.time_s.size(); ++k) {
-    bool whole = std::isfinite(record.voltage_v[k]);
-    if (!record.current_a.empty()) whole = whole && std::isfinite(record.current_a[k]);
-    if (!record.angle_rad.empty()) whole = whole && std::isfinite(record.angle_rad[k]);
-    if (record.angle_rad.empty())
-      for (const auto& sensor : record.accel_mps2)
-        for (const auto& axis : sensor) whole = whole && (axis.empty() || std::isfinite(axis[k]));
-    if (whole) rows.push_back(k);
-  }
+  for (std::size_t k = 0; k < record.time_s.size(); ++k)
+    if (is_whole(record, k)) rows.push_back(k);
   return rows;
 }
 
