@@ -334,6 +334,24 @@ TEST(EstimateWheel, AnEncoderSharpensTheAngleAndIsCalibratedByGravity) {
   }
 }
 
+TEST(EstimateWheel, AnEncoderCountsThroughAGapUnlessItStartsAnew) {
+  const Drive drive{{0.3, 0.0}, {{1.0, 0.0}, {2.0, 60 * rpm}, {9.0, 60 * rpm}, {2.0, 0.0}}};
+  WheelSensor sensor = record(drive, {}, 60.0, 8);
+  const auto hole = [](std::vector<double>& column) {
+    if (!column.empty()) column.erase(column.begin() + 300, column.begin() + 540);  // 4 s
+  };
+  hole(sensor.time_s);
+  for (auto& axis : sensor.accel_mps2) hole(axis);
+  EXPECT_FALSE(solve({sensor}).turns);
+  const auto counted =
+      solve({sensor}, with(&WheelOptions::encoder, encoder_of(drive, sensor.time_s)));
+  expect_turns(counted, drive.turns(0.0, counted.series.time_s.back()), 4e-3);
+  const auto anew = solve(
+      {sensor}, with(&WheelOptions::encoder,
+                     encoder_of(drive, sensor.time_s, 1.0, 15.0 * 2048.0, sensor.time_s[299])));
+  EXPECT_FALSE(anew.turns);
+}
+
 TEST(EstimateWheel, MissedCountsOfAnEncoderAreAddedAgain) {
   const WheelSensor sensor = record(there_and_on, {}, 200.0, 8);
   const auto solution =

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "proofmass/estimate/wheel/fit.hpp"
+#include "proofmass/signal/encoder.hpp"
 
 // Intervals of a fit in which the count of turns is in doubt.
 namespace proofmass::estimate {
@@ -27,6 +28,13 @@ inline void add_doubt(std::size_t k,
   doubt.widest = k;
   doubt.predicted = predicted;
 }
+
+/// Removes the doubts through which the encoder counted: by its angles before and after, the fit
+/// turned as far (to half a radian), at a mean speed within the range of those on both sides, which
+/// a counter that starts anew does not show, and no counts were missed.
+void drop_counted_doubts(const WheelReadings& readings,
+                         const std::vector<signal::CountSlip>& missed,
+                         WheelFit& fit);
 
 /// Length, number of readings and least share of g of the windows of GravityShown.
 struct GravityWindow {

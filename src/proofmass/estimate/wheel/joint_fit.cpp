@@ -10,6 +10,7 @@
 #include "proofmass/core/in_parallel.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/wheel/doubts.hpp"
 #include "proofmass/estimate/wheel/gyro_jerk.hpp"
 #include "proofmass/estimate/wheel/rests.hpp"
 
@@ -222,6 +223,7 @@ Result<Single> fit_along_encoder(const WheelSensor& sensor,
   if (!(along->track.lost <= not_a_wheel)) return no_gravity_in(sensor);
   single.fit = fit_with_radius(single.readings, along->track, depth, options);
   if (has_lost(single.fit, along->track.lost)) return angle_lost_in(sensor);
+  drop_counted_doubts(single.readings, along->missed, single.fit);
   single.encoder = std::move(along).value();
   return single;
 }
@@ -434,9 +436,12 @@ Joint fit_jointly(std::vector<WheelSensor> sensors, Pair pair, const WheelOption
       first.segment<wheel::gyro_states>(gyro), second.segment<wheel::gyro_states>(gyro),
       first.segment<1 + wheel::encoder_states>(rolling), first.tail<2>(), second.tail<2>();
   track.beginning.angle_rad = track.path.moving.front()(wheel::angle);
+  std::vector<signal::CountSlip> missed;
+  if (one.encoder) missed = one.encoder->missed;
   pair.singles.clear();
   sensors.clear();
   joint.fit = fit_with_radius(joint.readings, std::move(track), FitDepth::whole, options);
+  if (joint.readings.encoder) drop_counted_doubts(joint.readings, missed, joint.fit);
   return joint;
 }
 
