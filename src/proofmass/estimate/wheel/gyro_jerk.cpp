@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "proofmass/core/contract.hpp"
-#include "proofmass/core/statistics.hpp"
 
 namespace proofmass::estimate {
 namespace {
@@ -16,9 +15,10 @@ constexpr double most_std = 5.0;
 }  // namespace
 
 GyroJerk::GyroJerk(double rate_hz, double noise_variance)
-    : apart_(static_cast<std::size_t>(std::max(1.0, std::round(apart_s * rate_hz)))),
+    : rate_hz_(rate_hz),
+      apart_(static_cast<std::size_t>(std::max(1.0, std::round(apart_s * rate_hz)))),
       noise2_(6.0 * square(most_std) * noise_variance),
-      last_(2 * apart_ + 1) {
+      last_(2 * apart_ + 1, no_value) {
   PM_EXPECTS(rate_hz > 0.0);
   const double h = static_cast<double>(apart_) / rate_hz;
   per_square_ = 1.5 / (h * h * h);
@@ -26,20 +26,25 @@ GyroJerk::GyroJerk(double rate_hz, double noise_variance)
   decay_ = std::exp(-0.5 / static_cast<double>(apart_));
 }
 
-double GyroJerk::add(double speed_radps) {
+void GyroJerk::put(double speed_radps) {
+  const std::size_t size = last_.size();
+  last_[at_] = speed_radps;
+  at_ = (at_ + 1) % size;
   psd_ *= decay_;
-  if (std::isnan(speed_radps)) {
-    count_ = 0;
-    mean_accel_radps2_ = 0.0;
-    return psd_;
-  }
-  const std::size_t size = last_.size(), at = count_ % size;
-  last_[at] = speed_radps;
-  if (++count_ < size) return psd_;
-  const double first = last_[(at + 1) % size], middle = last_[(at + size - apart_) % size];
-  mean_accel_radps2_ = (speed_radps - first) / span_s_;
+  const double first = last_[at_], middle = last_[(at_ + apart_) % size];
+  const double change = speed_radps - first;
+  mean_accel_radps2_ = std::isnan(change) ? 0.0 : change / span_s_;
   const double second = speed_radps - 2.0 * middle + first;
+  if (std::isnan(second)) return;
   psd_ = std::max(psd_, per_square_ * std::max(second * second - noise2_, 0.0));
+}
+
+double GyroJerk::add(double time_s, double speed_radps) {
+  const double steps = std::round((time_s - last_s_) * rate_hz_);  // NaN at first
+  const double most = static_cast<double>(last_.size());
+  for (double lost = std::min(steps - 1.0, most); lost > 0.0; lost -= 1.0) put(no_value);
+  last_s_ = time_s;
+  put(speed_radps);
   return psd_;
 }
 
@@ -50,17 +55,11 @@ void mark_jerks(WheelReadings& readings) {
     const PlanarReadings& sensor = readings.sensors[s];
     if (sensor.speed_radps.empty()) continue;
     GyroJerk jerk(rate_hz, sensor.speed_scatter2);
-    constexpr double gap_steps = 2.5;
-    double last_s = readings.time_s.empty() ? 0.0 : readings.time_s.front();
     for (std::size_t k = 0; k < readings.epochs.size(); ++k) {
       WheelEpoch& epoch = readings.epochs[k];
       if (epoch.row[s] == WheelEpoch::no_row) continue;
-      // Across a gap the speed changes by more than jerk between samples.
-      if ((readings.time_s[k] - last_s) * rate_hz > gap_steps)
-        static_cast<void>(jerk.add(no_value));
-      last_s = readings.time_s[k];
-      epoch.jerk_psd = std::max(
-          epoch.jerk_psd, jerk.add(sensor.speed_radps[static_cast<std::size_t>(epoch.row[s])]));
+      const double speed_radps = sensor.speed_radps[static_cast<std::size_t>(epoch.row[s])];
+      epoch.jerk_psd = std::max(epoch.jerk_psd, jerk.add(readings.time_s[k], speed_radps));
     }
   }
 }

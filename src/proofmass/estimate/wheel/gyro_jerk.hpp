@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/wheel/fit.hpp"
 
 // How irregular a wheel's motion is at each time, from its gyroscope.
@@ -18,19 +19,25 @@ class GyroJerk {
   /// `rate_hz` of the measurements, > 0.
   GyroJerk(double rate_hz, double noise_variance);
 
-  /// The density up to this measurement; decays within 40 ms after the last irregularity. NaN: a
-  /// missing measurement, after which the differences begin anew.
-  [[nodiscard]] double add(double speed_radps);
+  /// The density up to this measurement; decays within 40 ms after the last irregularity. NaN, and
+  /// the rows that the time shows to be lost, are missing in the differences: a change of speed
+  /// across a gap of more than h is no jerk.
+  [[nodiscard]] double add(double time_s, double speed_radps);
   /// Mean acceleration, rad/s², over the last 2 h; 0 without measurements.
   [[nodiscard]] double mean_accel_radps2() const { return mean_accel_radps2_; }
 
  private:
+  /// Zero of `mean_accel_radps2_` and no new density unless all three measurements are there.
+  void put(double speed_radps);
+
+  double rate_hz_;
   std::size_t apart_;         ///< measurements in h
   double per_square_;         ///< from Δ² to the density
   double noise2_;             ///< Δ² that noise explains
   double decay_;              ///< from one measurement to the next
-  std::vector<double> last_;  ///< a ring of 2 `apart_` + 1 speeds
-  std::size_t count_ = 0;     ///< since the beginning or the last missing one
+  std::vector<double> last_;  ///< a ring of 2 `apart_` + 1 speeds, NaN where missing
+  std::size_t at_ = 0;        ///< of the oldest in the ring
+  double last_s_ = no_value;
   double span_s_, mean_accel_radps2_ = 0.0;
   double psd_ = 0.0;
 };

@@ -111,9 +111,10 @@ TEST(MeanAccel, IsThatOfTheSpeedsWithinAFifthOfASecond) {
 TEST(GyroJerk, IsZeroForNoise) {
   test::Normal normal(1);
   GyroJerk jerk(200.0, 1e-4);
-  for (int k = 0; k < 200; ++k) EXPECT_LT(jerk.add(5.0 + 0.001 * k), 1e-9);
+  for (int k = 0; k < 200; ++k) EXPECT_LT(jerk.add(k / 200.0, 5.0 + 0.001 * k), 1e-9);
   int above = 0;
-  for (int k = 0; k < 2000; ++k) above += jerk.add(0.01 * normal()) > 100.0 ? 1 : 0;
+  for (int k = 0; k < 2000; ++k)
+    above += jerk.add(1.0 + k / 200.0, 0.01 * normal()) > 100.0 ? 1 : 0;
   EXPECT_LT(above, 200);
 }
 
@@ -126,22 +127,29 @@ TEST(GyroJerk, IsTheDensityOfWhiteJerk) {
   for (int k = 0; k < count; ++k) {
     accel += std::sqrt(psd / rate_hz) * normal();
     speed += accel / rate_hz;
-    sum += jerk.add(speed) / count;
+    sum += jerk.add(k / rate_hz, speed) / count;
   }
   EXPECT_THAT(sum, testing::AllOf(testing::Gt(0.5 * psd), testing::Lt(5.0 * psd)));
 }
 
-TEST(GyroJerk, DecaysAfterAnIrregularityAndBeginsAnewAfterAGap) {
+TEST(GyroJerk, DecaysAfterAnIrregularityAndSeesNoStepAcrossAGap) {
+  constexpr double missing = std::numeric_limits<double>::quiet_NaN();
   GyroJerk jerk(100.0, 1e-4);
   double most = 0.0, last = 0.0;
   for (int k = 0; k < 100; ++k) {
-    last = jerk.add(k < 30 ? 0.0 : 2.0);
+    last = jerk.add(0.01 * k, k < 30 ? 0.0 : 2.0);
     most = std::max(most, last);
   }
   EXPECT_GT(most, 1e5);
   EXPECT_LT(last, 1e-6 * most);
-  (void)jerk.add(std::numeric_limits<double>::quiet_NaN());
-  for (int k = 0; k < 10; ++k) EXPECT_LT(jerk.add(9.0), 1e-6 * most);  // no step is seen
+  for (int k = 100; k < 103; ++k) (void)jerk.add(0.01 * k, missing);
+  for (int k = 103; k < 113; ++k) EXPECT_LT(jerk.add(0.01 * k, 9.0), 1e-6 * most);
+  for (int k = 116; k < 126; ++k) EXPECT_LT(jerk.add(0.01 * k, 2.0), 1e-6 * most);  // rows lost
+  // Gaps of a row, every fourth, hide no jerk.
+  double seen = 0.0;
+  for (int k = 126; k < 156; ++k)
+    if (k % 4 != 0) seen = std::max(seen, jerk.add(0.01 * k, k < 146 ? 2.0 : 4.0));
+  EXPECT_GT(seen, 0.5 * most);
 }
 
 }  // namespace

@@ -151,7 +151,7 @@ void LiveWheelFilter<S>::read(const LiveEpoch& epoch) {
     double& jerk_psd = now_.epochs[1].jerk_psd;
     const double speed = along(rate, axis);
     sensor.speed_radps[0] = speed;
-    jerk_psd = std::max(jerk_psd, jerks_[s].add(speed));
+    jerk_psd = std::max(jerk_psd, jerks_[s].add(epoch.time_s, speed));
     (*mean_accel_)[1] = jerks_[s].mean_accel_radps2();
     sensor.rate_u_radps[0] = along(rate, u) - sensor.leak_u.at(speed);
     sensor.rate_v_radps[0] = along(rate, v) - sensor.leak_v.at(speed);
