@@ -70,8 +70,8 @@ LocalMotion polynomial_at(const std::vector<FixBin>& bins,
   return {bins[at].angle_rad + c(0), c(1) / span_s, 2.0 * c(2) / (span_s * span_s)};
 }
 
-std::vector<LocalMotion> local_motions(const std::vector<FixBin>& bins) {
-  constexpr double half_rad = rad_per_turn / 12.0, half_s = 1.0;
+std::vector<LocalMotion> local_motions(const std::vector<FixBin>& bins, double half_rad) {
+  constexpr double half_s = 1.0;
   constexpr std::size_t fewest = 5;  // to either side
   std::vector<LocalMotion> out(bins.size());
   std::size_t first = 0, last = 0;
@@ -277,13 +277,13 @@ AngleFixes fixes_of_edges(View<double> time_s,
   return out;
 }
 
-AngleMotion motion_at(const AngleFixes& fixes, View<double> time_s) {
+AngleMotion motion_at(const AngleFixes& fixes, View<double> time_s, double half_rad) {
   AngleMotion out;
   for (auto* column : {&out.angle_rad, &out.speed_radps, &out.accel_radps2})
     column->assign(time_s.size(), no_angle);
   const std::vector<FixBin> bins = binned(fixes);
   if (bins.size() < 4) return out;
-  const std::vector<LocalMotion> curves = local_motions(bins);
+  const std::vector<LocalMotion> curves = local_motions(bins, half_rad);
   std::size_t at = 0;
   for (std::size_t k = 0; k < time_s.size(); ++k) {
     const double t = time_s[k];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -54,13 +55,17 @@ struct AngleMotion {
   std::vector<double> angle_rad, speed_radps, accel_radps2;
 };
 
-/// Local polynomials of fourth degree over a twelfth of a turn to either side (at most 1 s, at
-/// least five fixes), evaluated at bins of a 256th of a turn (at most 0.1 s) and interpolated
-/// between them. NaN outside the fixes. Of a ripple twice a turn the angle has all but 4e-5, speed
-/// and acceleration all but 0.25 %; parabolas over half of that, whose noise is larger, attenuate
-/// both by 2 to 3 %. Source: A. Savitzky, M. J. E. Golay, Analytical Chemistry 36 (1964) 1627.
-/// Cost: O(fixes + bins + times).
-[[nodiscard]] AngleMotion motion_at(const AngleFixes& fixes, View<double> time_s);
+inline constexpr double twelfth_of_turn_rad = std::numbers::pi / 6.0;
+
+/// Local polynomials of fourth degree over `half_rad` to either side (at most 1 s, at least five
+/// fixes), evaluated at bins of a 256th of a turn (at most 0.1 s) and interpolated between them.
+/// NaN outside the fixes. Over a twelfth of a turn to either side, the angle has all but 4e-5 of a
+/// ripple twice a turn, speed and acceleration all but 0.25 %; parabolas over half of that, whose
+/// noise is larger, attenuate both by 2 to 3 %. Source: A. Savitzky, M. J. E. Golay, Analytical
+/// Chemistry 36 (1964) 1627. Cost: O(fixes + bins + times).
+[[nodiscard]] AngleMotion motion_at(const AngleFixes& fixes,
+                                    View<double> time_s,
+                                    double half_rad = twelfth_of_turn_rad);
 
 /// A lasting difference by whole counts between an encoder and a reference.
 struct CountSlip {

@@ -1,5 +1,6 @@
 #include "proofmass/calibrate/encoder/fit.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -63,9 +64,14 @@ Eigen::VectorXd priors(const at::Layout& layout,
   return std;
 }
 
+/// Motion of the wheel at each row, and that at which the derivatives are taken.
+struct WheelPoints {
+  std::vector<WheelPoint> wheel, instrument;
+};
+
 /// Normal equations of one axis in the parameters that it sees, and the gradient of each block.
 struct AxisNormal {
-  Eigen::Matrix<double, at::seen, at::seen> information;
+  Eigen::Matrix<double, at::seen, at::seen> information;  ///< Σ h̃ hᵀ/σ²
   Eigen::MatrixXd block_gradients;
   double squares = 0.0;  ///< of the residuals
   std::size_t count = 0;
@@ -73,7 +79,7 @@ struct AxisNormal {
 
 AxisNormal normal_of(const EncoderRecording& recording,
                      const EncoderRows& rows,
-                     const std::vector<WheelPoint>& wheel,
+                     const WheelPoints& points,
                      const at::Seen& parameters,
                      std::size_t axis,
                      double variance,
@@ -85,13 +91,16 @@ AxisNormal normal_of(const EncoderRecording& recording,
     const double value = recording.axes[axis][rows.row[k]];
     if (std::isnan(value)) continue;
     const AxisPrediction predicted =
-        predict_axis(parameters, wheel[k], rows.phase[k], gravity_mps2);
+        predict_axis(parameters, points.wheel[k], rows.phase[k], gravity_mps2);
+    const at::Seen by =
+        points.instrument.empty()
+            ? predicted.h
+            : predict_axis(parameters, points.instrument[k], rows.phase[k], gravity_mps2).h;
     const double residual = value - predicted.value;
     const double off = std::abs(residual) / std::sqrt(variance);
     const double weight = (off > huber ? huber / off : 1.0) / variance;
-    normal.information.noalias() += weight * predicted.h * predicted.h.transpose();
-    normal.block_gradients.col(static_cast<Index>(rows.block[k])) +=
-        weight * residual * predicted.h;
+    normal.information.noalias() += weight * by * predicted.h.transpose();
+    normal.block_gradients.col(static_cast<Index>(rows.block[k])) += weight * residual * by;
     normal.squares += residual * residual * weight * variance;
     ++normal.count;
   }
@@ -123,7 +132,7 @@ void add_axis(const AxisNormal& axis_normal,
   }
 }
 
-/// H⁻¹ (Σ_b g_b g_bᵀ B/(B − 1)) H⁻¹ with the gradients about their mean.
+/// H⁻¹ (Σ_b g_b g_bᵀ B/(B − 1)) H⁻ᵀ with the gradients about their mean.
 Eigen::MatrixXd scatter_of_blocks(const Normal& normal, const Eigen::MatrixXd& inverse) {
   const double blocks = static_cast<double>(normal.block_gradients.cols());
   const Eigen::VectorXd mean = normal.block_gradients.rowwise().mean();
@@ -131,13 +140,13 @@ Eigen::MatrixXd scatter_of_blocks(const Normal& normal, const Eigen::MatrixXd& i
   return about * about.transpose() * (blocks / (blocks - 1.0));
 }
 
-std::vector<WheelPoint> points_of(const EncoderRows& rows, const Eigen::VectorXd& parameters) {
+std::vector<WheelPoint> points_of(const EncoderMotion& motion, const Eigen::VectorXd& parameters) {
   std::vector<WheelPoint> points;
-  points.reserve(rows.row.size());
-  for (std::size_t k = 0; k < rows.row.size(); ++k) {
-    points.push_back(true_point(parameters, rows.shown.angle_rad[k], rows.shown.speed_radps[k],
-                                rows.shown.accel_radps2[k]));
-    points.back().jerk = rows.jerk_radps3[k];
+  points.reserve(motion.jerk_radps3.size());
+  for (std::size_t k = 0; k < motion.jerk_radps3.size(); ++k) {
+    points.push_back(true_point(parameters, motion.at.angle_rad[k], motion.at.speed_radps[k],
+                                motion.at.accel_radps2[k]));
+    points.back().jerk = motion.jerk_radps3[k];
   }
   return points;
 }
@@ -149,7 +158,7 @@ double cost_of(const EncoderRecording& recording,
                const EncoderFit& fit,
                const Eigen::VectorXd& parameters) {
   const at::Layout layout = at::layout_of(recording);
-  const std::vector<WheelPoint> wheel = points_of(rows, parameters);
+  const std::vector<WheelPoint> wheel = points_of(rows.shown, parameters);
   double cost = parameters.cwiseQuotient(fit.prior_std).squaredNorm();
   for (std::size_t axis = 0; axis < layout.axes; ++axis) {
     const at::Seen seen = at::seen_by(parameters, layout, axis);
@@ -281,26 +290,40 @@ AxisPrediction predict_axis(const at::Seen& parameters,
   return out;
 }
 
-EncoderFit fit_encoder(const EncoderRecording& recording,
-                       const EncoderRows& rows,
-                       const EncoderOptions& options) {
+namespace {
+
+enum class Derivatives { own, smooth };
+
+/// What is fitted.
+struct EncoderProblem {
+  const EncoderRecording& recording;
+  const EncoderRows& rows;
+  const EncoderOptions& options;
+};
+
+/// Iterations up to `most`, from where `fit` is.
+EncoderFit iterated(const EncoderProblem& problem,
+                    Derivatives derivatives,
+                    int most,
+                    EncoderFit fit) {
+  const auto& [recording, rows, options] = problem;
   // The model itself is not more accurate than 0.1 mg.
   constexpr double least_std_mps2 = 1e-3;
+  constexpr int fewest = 3;
   const at::Layout layout = at::layout_of(recording);
   const Index n = layout.count();
-  EncoderFit fit;
-  fit.parameters = Eigen::VectorXd::Zero(n);
-  fit.variance.assign(layout.axes, square(0.1 * options.gravity_mps2));
-  constexpr int most = 30;
-  for (; fit.iterations < most && !fit.converged; ++fit.iterations) {
+  const int first = fit.iterations;
+  for (; fit.iterations < first + most && !fit.converged; ++fit.iterations) {
     fit.prior_std = priors(layout, options, fit.parameters);
-    const std::vector<WheelPoint> wheel = points_of(rows, fit.parameters);
+    WheelPoints points{points_of(rows.shown, fit.parameters), {}};
+    if (derivatives == Derivatives::smooth)
+      points.instrument = points_of(rows.smooth, fit.parameters);
     Normal normal{Eigen::MatrixXd::Zero(n, n),
                   Eigen::MatrixXd::Zero(n, static_cast<Index>(rows.blocks))};
     std::vector<double> variance = fit.variance;
     for (std::size_t axis = 0; axis < layout.axes; ++axis) {
       const AxisNormal own =
-          normal_of(recording, rows, wheel, at::seen_by(fit.parameters, layout, axis), axis,
+          normal_of(recording, rows, points, at::seen_by(fit.parameters, layout, axis), axis,
                     fit.variance[axis], options.gravity_mps2);
       add_axis(own, layout, axis, normal);
       if (own.count > 0)
@@ -310,13 +333,15 @@ EncoderFit fit_encoder(const EncoderRecording& recording,
     const Eigen::VectorXd precision = fit.prior_std.array().square().inverse();
     Eigen::MatrixXd information = normal.information;
     information.diagonal() += precision;
-    fit.inverse = positive_inverse(information);
+    fit.inverse = information.partialPivLu().inverse();
     const Eigen::VectorXd step = fit.inverse * (normal.block_gradients.rowwise().sum() -
                                                 precision.cwiseProduct(fit.parameters));
     fit.type_a = scatter_of_blocks(normal, fit.inverse);
-    const double share = shortened(recording, rows, options, fit, step);
+    // The root with smooth derivatives is not the least cost.
+    const double share =
+        derivatives == Derivatives::own ? shortened(recording, rows, options, fit, step) : 1.0;
     fit.parameters += share * step;
-    bool settled = fit.iterations > 2;
+    bool settled = fit.iterations >= first + fewest;
     for (std::size_t axis = 0; axis < layout.axes; ++axis)
       settled = settled && std::abs(variance[axis] / fit.variance[axis] - 1.0) < 0.02;
     fit.variance = std::move(variance);
@@ -324,6 +349,40 @@ EncoderFit fit_encoder(const EncoderRecording& recording,
     fit.converged = settled && step.head<encoder_parameters>().norm() < 1e-2 * std_rad;
   }
   return fit;
+}
+
+}  // namespace
+
+double log_variance(const EncoderFit& fit) {
+  double sum = 0.0;
+  for (const double variance : fit.variance) sum += std::log(variance);
+  return sum;
+}
+
+EncoderFit fit_encoder(const EncoderRecording& recording,
+                       const EncoderRows& rows,
+                       const EncoderOptions& options,
+                       const std::optional<EncoderFit>& from) {
+  constexpr int near = 8, near_root = 10, most = 30;
+  // The least squares fit some of the encoder's noise: their residuals are up to several times
+  // smaller.
+  constexpr double usable = 4.0;
+  const EncoderProblem problem{recording, rows, options};
+  const at::Layout layout = at::layout_of(recording);
+  EncoderFit start;
+  if (from) {
+    start = *from;
+    start.iterations = 0;
+  } else {
+    start.parameters = Eigen::VectorXd::Zero(layout.count());
+    start.variance.assign(layout.axes, square(0.1 * options.gravity_mps2));
+    start = iterated(problem, Derivatives::own, near, std::move(start));
+  }
+  start.converged = false;
+  EncoderFit fit = iterated(problem, Derivatives::smooth, near_root, start);
+  if (fit.converged && log_variance(fit) < log_variance(start) + usable) return fit;
+  // At one speed only the ripple shows the lever arm, and the smooth motion may not have it.
+  return iterated(problem, Derivatives::own, most, std::move(start));
 }
 
 EncoderOffsets offsets_of(const EncoderRecording& recording,
@@ -337,6 +396,7 @@ EncoderOffsets offsets_of(const EncoderRecording& recording,
     seen.push_back(at::seen_by(fit.parameters, layout, axis));
   EncoderOffsets out;
   double start_rad = 0.0, weight = 0.0, sum = 0.0, fitted = 0.0, time = 0.0, angle = 0.0;
+  double speed = 0.0;
   std::size_t count = 0;
   const auto close = [&] {
     if (count == 0 || !(weight > 0.0)) return;
@@ -345,15 +405,18 @@ EncoderOffsets offsets_of(const EncoderRecording& recording,
     out.angle_rad.push_back(angle / n);
     out.offset_rad.push_back(sum / weight + fitted / n);
     out.fitted_rad.push_back(fitted / n);
+    out.speed_radps.push_back(speed / n);
   };
+  // The noise of the acceleration, times a lever arm, would look like single counts.
+  EncoderMotion motion = rows.smooth;
+  motion.at.angle_rad = rows.shown.at.angle_rad;
+  const std::vector<WheelPoint> points = points_of(motion, fit.parameters);
   for (std::size_t k = 0; k < rows.row.size(); ++k) {
-    WheelPoint wheel = true_point(fit.parameters, rows.shown.angle_rad[k],
-                                  rows.shown.speed_radps[k], rows.shown.accel_radps2[k]);
-    wheel.jerk = rows.jerk_radps3[k];
+    const WheelPoint& wheel = points[k];
     if (count == 0 || std::abs(wheel.angle - start_rad) > width_rad) {
       close();
       start_rad = wheel.angle;
-      weight = sum = fitted = time = angle = 0.0;
+      weight = sum = fitted = time = angle = speed = 0.0;
       count = 0;
     }
     for (std::size_t axis = 0; axis < recording.axes.size(); ++axis) {
@@ -367,6 +430,7 @@ EncoderOffsets offsets_of(const EncoderRecording& recording,
     fitted += error_at(fit.parameters, wheel.angle).value;
     time += rows.time_s[k];
     angle += wheel.angle;
+    speed += wheel.speed;
     ++count;
   }
   close();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "proofmass/calibrate/encoder.hpp"
@@ -40,20 +41,27 @@ using Seen = Eigen::Matrix<double, seen, 1>;
                            std::size_t axis);
 }  // namespace encoder
 
+struct EncoderMotion {
+  signal::AngleMotion at;
+  std::vector<double> jerk_radps3;
+};
+
 /// Rows of the recording in which the wheel turns, with the motion that the encoder shows there.
 struct EncoderRows {
   std::vector<std::size_t> row;
   std::vector<double> time_s, phase;  ///< phase: −1 … 1 over the recording
-  signal::AngleMotion shown;
-  std::vector<double> jerk_radps3;
+  EncoderMotion shown;
+  /// The same, smoothed over a quarter of a turn to either side: a three-hundredth of the variance
+  /// of the acceleration.
+  EncoderMotion smooth;
   std::vector<std::size_t> block;  ///< of whole turns
   std::size_t blocks = 0;
 };
 
 struct EncoderFit {
   Eigen::VectorXd parameters, prior_std;
-  Eigen::MatrixXd inverse;       ///< H⁻¹
-  Eigen::MatrixXd type_a;        ///< H⁻¹ M H⁻¹
+  Eigen::MatrixXd inverse;       ///< H⁻¹, not symmetric
+  Eigen::MatrixXd type_a;        ///< H⁻¹ M H⁻ᵀ
   std::vector<double> variance;  ///< of each axis
   int iterations = 0;
   bool converged = false;
@@ -79,14 +87,25 @@ struct AxisPrediction {
                                           double phase,
                                           double gravity_mps2);
 
-/// Gauss–Newton with the priors, weights by the residuals of each axis.
+/// Gauss–Newton with the priors, weights by the residuals of each axis; then instrumental
+/// variables: Σ h̃ᵢ rᵢ/σᵢ² = 0 with h̃ the derivatives at the smooth motion. The noise of the
+/// encoder's acceleration, times a lever arm, is in the residuals as well as in their derivatives
+/// h; its variance in h r would bias lever arm, delay and harmonics. Where that does not converge,
+/// or leaves larger residuals, the least squares are the result. Source: W. A. Fuller, Measurement
+/// Error Models (1987), section 1.4.
+/// `from`: a fit to other rows of the recording, to start from.
 [[nodiscard]] EncoderFit fit_encoder(const EncoderRecording& recording,
                                      const EncoderRows& rows,
-                                     const EncoderOptions& options);
+                                     const EncoderOptions& options,
+                                     const std::optional<EncoderFit>& from);
+
+/// Σ ln of the variances of the axes' residuals.
+[[nodiscard]] double log_variance(const EncoderFit& fit);
 
 /// ψ less the θ that the accelerometers show, in bins of a sixteenth of a turn.
 struct EncoderOffsets {
   std::vector<double> time_s, angle_rad, offset_rad, fitted_rad;
+  std::vector<double> speed_radps;
 };
 [[nodiscard]] EncoderOffsets offsets_of(const EncoderRecording& recording,
                                         const EncoderRows& rows,

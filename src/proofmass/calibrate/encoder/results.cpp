@@ -86,7 +86,8 @@ void add_encoder_results(const EncoderRecording& recording,
       share("accelerometers' distance from the axle", false, prior_share(fit, levers(layout))),
       share("accelerometers' delay", false, prior_share(fit, {at::delay}))};
   const Eigen::VectorXd precision = fit.prior_std.array().square().inverse();
-  const Eigen::MatrixXd cov = fit.type_a + fit.inverse * precision.asDiagonal() * fit.inverse;
+  const Eigen::MatrixXd cov =
+      fit.type_a + fit.inverse * precision.asDiagonal() * fit.inverse.transpose();
   for (std::size_t order = 0; order < encoder_orders; ++order) {
     EncoderHarmonic& harmonic = out.harmonics[order];
     const Index c = at::errors + 2 * static_cast<Index>(order);
