@@ -243,15 +243,16 @@ std::vector<double> steady_offsets(const EncoderRecording& recording,
   return out;
 }
 
-/// Mean of the offsets of four turns, those of bins [first, first + 64) as far as they exist.
-double mean_offset(const EncoderOffsets& bins, std::ptrdiff_t first) {
+/// Mean of the residuals of four turns, those of bins [first, first + 64) as far as they exist.
+double mean_residual(const EncoderOffsets& bins, std::ptrdiff_t first) {
   constexpr std::ptrdiff_t four_turns = 64;
   const auto size = static_cast<std::ptrdiff_t>(bins.offset_rad.size());
-  Moments offsets;
+  Moments residuals;
   for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(first, 0);
        i < std::min(first + four_turns, size); ++i)
-    offsets.add(bins.offset_rad[static_cast<std::size_t>(i)]);
-  return offsets.mean;
+    residuals.add(bins.offset_rad[static_cast<std::size_t>(i)] -
+                  bins.fitted_rad[static_cast<std::size_t>(i)]);
+  return residuals.mean;
 }
 
 /// `removed` and `found` together. Those within two turns of each other are one, in the middle of
@@ -279,8 +280,10 @@ std::vector<signal::CountSlip> lasting(const std::vector<signal::CountSlip>& rem
     if (after - i > 1) {
       const double first_s = all[i].time_s, last_s = all[after - 1].time_s;
       const double change =
-          mean_offset(bins, bin_at(last_s)) - mean_offset(bins, bin_at(first_s) - four_turns);
-      one.counts = static_cast<int>(std::lround(change / step_rad));
+          mean_residual(bins, bin_at(last_s)) - mean_residual(bins, bin_at(first_s) - four_turns);
+      int most = 0;
+      for (std::size_t k = i; k < after; ++k) most = std::max(most, std::abs(all[k].counts));
+      one.counts = std::clamp(static_cast<int>(std::lround(change / step_rad)), -most, most);
       for (const signal::CountSlip& slip : removed)
         if (slip.time_s >= first_s && slip.time_s <= last_s) one.counts += slip.counts;
       one.end_s = all[after - 1].end_s;

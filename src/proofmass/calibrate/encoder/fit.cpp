@@ -363,7 +363,7 @@ EncoderFit fit_encoder(const EncoderRecording& recording,
                        const EncoderRows& rows,
                        const EncoderOptions& options,
                        const std::optional<EncoderFit>& from) {
-  constexpr int near = 8, near_root = 10, most = 30;
+  constexpr int near = 8, near_root = 30, most = 30;
   // The least squares fit some of the encoder's noise: their residuals are up to several times
   // smaller.
   constexpr double usable = 4.0;
