@@ -256,9 +256,9 @@ double mean_residual(const EncoderOffsets& bins, std::ptrdiff_t first) {
 }
 
 /// `removed` and `found` together. Those within two turns of each other are one, in the middle of
-/// their times, with the counts by which the offsets after all of them differ from those before:
-/// what the next turn takes back was no missed count, but an error of the motion shown, as at a
-/// kink of the speed.
+/// their times, with the counts by which the residuals after all of them differ from those before,
+/// at most those of the largest. A step that reverses within two turns is no missed count, but an
+/// error of the motion shown, as at a kink of the speed.
 std::vector<signal::CountSlip> lasting(const std::vector<signal::CountSlip>& removed,
                                        const std::vector<signal::CountSlip>& found,
                                        const EncoderOffsets& bins,
@@ -325,12 +325,12 @@ Result<EncoderRound> without_slips(const EncoderRecording& recording,
     std::vector<signal::CountSlip> all =
         lasting(out.missed, found, round->offsets, recording.step_rad);
     if (same_counts(all, out.missed)) break;
-    const bool taken_back = all.size() < out.missed.size();
+    const bool reversed = all.size() < out.missed.size();
     out.missed = std::move(all);
     fixes = recording.encoder;
     signal::remove_slips(out.missed, recording.step_rad, fixes);
     round = one_round(recording, fixes, start, options);
-    if (taken_back) break;
+    if (reversed) break;
   }
   for (int n = 0; n < most_rounds && round && !out.missed.empty(); ++n) {
     std::vector<double> residual_rad = round->offsets.offset_rad;

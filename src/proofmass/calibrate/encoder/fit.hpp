@@ -41,6 +41,7 @@ using Seen = Eigen::Matrix<double, seen, 1>;
                            std::size_t axis);
 }  // namespace encoder
 
+/// Motion that the encoder shows, at each row.
 struct EncoderMotion {
   signal::AngleMotion at;
   std::vector<double> jerk_radps3;
@@ -91,9 +92,9 @@ struct AxisPrediction {
 /// variables: Σ h̃ᵢ rᵢ/σᵢ² = 0 with h̃ the derivatives at the smooth motion. The noise of the
 /// encoder's acceleration, times a lever arm, is in the residuals as well as in their derivatives
 /// h; its variance in h r would bias lever arm, delay and harmonics. Where that does not converge,
-/// or leaves larger residuals, the least squares are the result. Source: W. A. Fuller, Measurement
-/// Error Models (1987), section 1.4.
-/// `from`: a fit to other rows of the recording, to start from.
+/// or leaves much larger residuals, least squares give the result. Source: W. A. Fuller,
+/// Measurement Error Models (1987), section 1.4. `from`: a fit to other rows of the recording, to
+/// start from.
 [[nodiscard]] EncoderFit fit_encoder(const EncoderRecording& recording,
                                      const EncoderRows& rows,
                                      const EncoderOptions& options,

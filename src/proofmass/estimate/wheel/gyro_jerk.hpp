@@ -27,7 +27,7 @@ class GyroJerk {
   [[nodiscard]] double mean_accel_radps2() const { return mean_accel_radps2_; }
 
  private:
-  /// Zero of `mean_accel_radps2_` and no new density unless all three measurements are there.
+  /// Appends to the ring; updates the density and the mean acceleration where their speeds exist.
   void put(double speed_radps);
 
   double rate_hz_;
