@@ -10,6 +10,7 @@
 #include "cli/exit_status.hpp"
 #include "input/input.hpp"
 #include "input/listed_rests.hpp"
+#include "input/saturated_rests.hpp"
 #include "proofmass/calibrate/recording_poses.hpp"
 #include "proofmass/io/positions/direction_label.hpp"
 #include "proofmass/io/positions/pose_table.hpp"
@@ -158,6 +159,9 @@ std::optional<double> bring_to_reference_supply(const std::string& sensor_file,
 FilePoses recording_poses(Recording recording,
                           const CalibrateCommand& command,
                           std::vector<Note>& notes) {
+  const Triad triad = need_of_file(calibrate::only_accelerometer(recording), recording.source);
+  const std::vector<std::size_t> axes{*triad.x, *triad.y, *triad.z};
+  const bool saturated = drop_saturated_rests(axes, recording);
   std::vector<Recording> one;
   one.push_back(std::move(recording));
   if (!command.input.sensors.empty()) {
@@ -169,7 +173,10 @@ FilePoses recording_poses(Recording recording,
   FilePoses out;
   if (command.supplies_v.empty())
     out.reference_supply_v = bring_to_reference_supply(command.update_sensor, read);
-  const Rests rests = rests_of(read, command, notes);
+  Rests rests = rests_of(read, command, notes);
+  if (saturated)
+    std::erase_if(rests.dwells,
+                  [&](const Dwell& dwell) { return !is_measured(read, axes, dwell); });
   calibrate::RecordingPoses found =
       need_of_file(calibrate::recording_poses(
                        read, {.dwells = rests.dwells, .shortest_s = command.shortest_rest_s}),

@@ -8,6 +8,7 @@
 #include "cli/exit_status.hpp"
 #include "input/input.hpp"
 #include "input/listed_rests.hpp"
+#include "input/saturated_rests.hpp"
 #include "proofmass/calibrate/tumble/dwells.hpp"
 #include "proofmass/report/wording.hpp"
 #include "proofmass/signal/audit.hpp"
@@ -84,22 +85,30 @@ std::vector<Dwell> steady_rests(const Recording& recording,
   return found.rests.empty() ? steady : calibrate::at_rest(steady, found.rests);
 }
 
+// What precedes a file's rests, and whether some are left out.
+struct FilePlace {
+  std::size_t rests_before = 0;
+  bool saturated = false;  // an output is at the limits of its range
+};
+
 // --angles: one per rest, in order over all files.
 std::vector<double> given_angles(const Recording& recording,
                                  const std::vector<Dwell>& dwells,
                                  const TumbleCommand& command,
-                                 std::size_t before) {
+                                 const FilePlace& place) {
   const std::vector<double>& angles = command.angles_deg;
   const bool last = recording.source == command.files.back();
-  const std::size_t end = before + dwells.size();
+  const std::size_t before = place.rests_before, end = before + dwells.size();
   if (end > angles.size() || (last && end != angles.size()))
-    throw Failure(usage, fmt::format("{}: {} found, at {}: --angles has {} for {}: give one angle "
-                                     "for each rest, or --rest S to find only longer ones",
-                                     recording.source, report::count_words(dwells.size(), "rest"),
-                                     times_of(recording, dwells),
-                                     report::count_words(
-                                         angles.size() - std::min(before, angles.size()), "angle"),
-                                     before > 0 ? "the rests from here on" : "them"));
+    throw Failure(
+        usage, fmt::format(
+                   "{}: {} found, at {}: --angles has {} for {}: give one angle "
+                   "for each rest, or --rest S to find only longer ones{}",
+                   recording.source, report::count_words(dwells.size(), "rest"),
+                   times_of(recording, dwells),
+                   report::count_words(angles.size() - std::min(before, angles.size()), "angle"),
+                   before > 0 ? "the rests from here on" : "them",
+                   place.saturated ? "; rests at the limits of the range are not among them" : ""));
   std::vector<double> out;
   for (std::size_t k = before; k < end; ++k) out.push_back(angles[k] * rad_per_deg);
   return out;
@@ -136,12 +145,12 @@ Settings listed_settings(const Recording& recording, const TumbleCommand& comman
 Settings settings_of(const Recording& recording,
                      const TumbleColumns& columns,
                      const TumbleCommand& command,
-                     std::size_t before) {
+                     const FilePlace& place) {
   Settings out;
   if (!command.rests.empty()) out = listed_settings(recording, command);
   if (!command.angles_deg.empty()) {
     if (out.dwells.empty()) out.dwells = rests_of(recording, columns, command);
-    out.angles_rad = given_angles(recording, out.dwells, command, before);
+    out.angles_rad = given_angles(recording, out.dwells, command, place);
   }
   if (!out.angles_rad.empty()) return out;
   if (!columns.angle)
@@ -153,17 +162,30 @@ Settings settings_of(const Recording& recording,
   return out;
 }
 
+// Without the rests in which an output is at the limits of its range.
+void erase_saturated(const Recording& recording, const TumbleColumns& columns, Settings& settings) {
+  Settings kept;
+  for (std::size_t k = 0; k < settings.dwells.size(); ++k) {
+    if (!is_measured(recording, columns.outputs, settings.dwells[k])) continue;
+    kept.dwells.push_back(settings.dwells[k]);
+    kept.angles_rad.push_back(settings.angles_rad[k]);
+  }
+  settings = std::move(kept);
+}
+
 TumblePart read_rests(const Recording& recording,
                       const TumbleColumns& columns,
                       const TumbleCommand& command,
-                      std::size_t before) {
-  const auto [dwells, angles] = settings_of(recording, columns, command, before);
+                      const FilePlace& place) {
+  TumblePart part;
+  Settings settings = settings_of(recording, columns, command, place);
+  part.rests = settings.dwells.size();
+  if (place.saturated) erase_saturated(recording, columns, settings);
+  const auto& [dwells, angles] = settings;
   if (dwells.size() < 2)
     throw Failure(bad_input,
                   fmt::format("{}: the table's angle is constant in {}: expected two or more",
                               recording.source, report::count_words(dwells.size(), "place")));
-  TumblePart part;
-  part.rests = dwells.size();
   const bool timed = recording.time.source != TimeSource::none;
   for (std::size_t k = 0; k < dwells.size(); ++k) {
     const double begin = recording.time.at(dwells[k].first);
@@ -222,23 +244,26 @@ TumblePart read_part(const TumbleCommand& command,
                      std::vector<Note>& notes) {
   Recording recording = load_all(command.files[file], command);
   recording.source = command.files[file];
+  const auto columns_now = [&] {
+    return tumble_columns(recording, command.angle_channel, command.input.channels);
+  };
+  const bool saturated = drop_saturated_rests(columns_now().outputs, recording);
   apply_sensors(recording, command, notes);
-  const TumbleColumns columns =
-      tumble_columns(recording, command.angle_channel, command.input.channels);
+  const TumbleColumns columns = columns_now();
   for (const Note& note : recording.notes) {
     // A table of positions needs no time base.
     if (note.severity != Severity::info && note.text.find("no time column") == std::string::npos)
       notes.push_back(note);
   }
   if (!command.angles_deg.empty() || !command.rests.empty())
-    return read_rests(recording, columns, command, before);
+    return read_rests(recording, columns, command, {before, saturated});
   if (!columns.angle)
     throw Failure(usage, recording.source +
                              ": no column with the table's angle: name it with --angle, or give "
                              "--angles for the rests of a recording");
   if (calibrate::stops_in_places(angles_rad(recording.channels[*columns.angle]),
                                  recording.time.rate_hz))
-    return read_rests(recording, columns, command, before);
+    return read_rests(recording, columns, command, {before, saturated});
   return read_table(recording, columns, command.input, notes);
 }
 

@@ -1,6 +1,7 @@
 #include "proofmass/signal/unusable.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <iterator>
@@ -99,6 +100,32 @@ bool stand_out(View<double> series, const std::vector<Run>& runs, double low, do
   return 2 * at_ends < series.size() && 2 * in_long > in_runs;
 }
 
+// Whether the noise, which moves other values by steps, leaves the lowest or highest one of them
+// eight times as often as each of its neighbours, while another axis changes: the noise of a sensor
+// at rest near its limit is cut off there, in runs too short and too irregular for the other tests.
+bool piles_up(View<double> series,
+              double end,
+              double lsb,
+              const std::vector<View<double>>& others) {
+  constexpr std::size_t fewest = 50, neighbours = 8, times_as_often = 8;
+  constexpr double steps = 2.0;
+  std::array<std::size_t, neighbours + 1> often{};
+  std::vector<double> changes;
+  std::size_t alone = 0;
+  for (std::size_t k = 1; k < series.size(); ++k) {
+    const double off = std::abs(series[k] - end) / lsb;
+    if (off < static_cast<double>(neighbours) + 0.5) ++often[static_cast<std::size_t>(off + 0.5)];
+    const bool stays = series[k] == end && series[k - 1] == end;
+    if (!stays && std::isfinite(series[k] - series[k - 1]))
+      changes.push_back(std::abs(series[k] - series[k - 1]));
+    if (stays && std::ranges::any_of(others, [k](View<double> o) { return o[k] != o[k - 1]; }))
+      ++alone;
+  }
+  const std::size_t most = *std::max_element(often.begin() + 1, often.end());
+  return often[0] >= std::max(fewest, times_as_often * most) && 2 * alone > often[0] &&
+         median(std::move(changes)).value_or(0.0) >= steps * lsb;
+}
+
 ChannelAudit rails_of(const Channel& axis) {
   RunningChannel running(Subsample::usual_capacity);
   const View<double> values = axis.values;
@@ -150,6 +177,10 @@ RangeEnds range_ends(const Channel& axis, const std::vector<View<double>>& other
   std::vector<Witness> witnesses;
   for (const auto& [value, end] : {std::pair{low, &ends.low}, {high, &ends.high}}) {
     if (*end) continue;
+    if (lsb > 0.0 && piles_up(series, value, lsb, others)) {
+      *end = value;
+      continue;
+    }
     const std::vector<Run> runs = runs_at(series, value);
     if (!are_cut_off(series, runs, value, lsb)) continue;
     if (witnesses.empty())
@@ -159,30 +190,73 @@ RangeEnds range_ends(const Channel& axis, const std::vector<View<double>>& other
   return ends;
 }
 
-std::vector<Note> drop_saturated(const std::vector<std::size_t>& channels, Recording& recording) {
-  std::vector<RangeEnds> ends;
+namespace {
+
+// The samples at an end of the channel's range, and what is said about them.
+struct Saturated {
+  std::vector<std::size_t> samples;
+  std::string ends;
+};
+
+std::vector<Saturated> saturated(const std::vector<std::size_t>& channels,
+                                 const Recording& recording) {
+  std::vector<Saturated> out;
   for (const std::size_t c : channels) {
     std::vector<View<double>> others;
     for (const std::size_t other : channels)
       if (other != c) others.emplace_back(recording.channels[other].values);
-    ends.push_back(range_ends(recording.channels[c], others));
+    const Channel& channel = recording.channels[c];
+    const RangeEnds ends = range_ends(channel, others);
+    Saturated& one = out.emplace_back();
+    if (!ends.reached()) continue;
+    one.ends = in_words(ends, channel.unit);
+    const View<double> values = channel.values;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (values[k] == ends.low || values[k] == ends.high) one.samples.push_back(k);
   }
+  return out;
+}
+
+Note note_on(const Saturated& found, const Channel& channel, const Recording& recording) {
+  return {Severity::warning,
+          fmt::format("{}: {} of {} samples are at the limits of the range ({}), from {:.2f} s on, "
+                      "and are not used: record with a wider range",
+                      channel.name, found.samples.size(), channel.values.size(), found.ends,
+                      recording.time.at(found.samples.front()))};
+}
+
+}  // namespace
+
+std::vector<Note> drop_saturated(const std::vector<std::size_t>& channels, Recording& recording) {
+  const std::vector<Saturated> found = saturated(channels, recording);
   std::vector<Note> notes;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (!ends[i].reached()) continue;
+    if (found[i].samples.empty()) continue;
     Channel& channel = recording.channels[channels[i]];
-    std::size_t count = 0, first = 0;
     std::vector<double>& values = channel.values.edit();
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      if (values[k] != ends[i].low && values[k] != ends[i].high) continue;
-      if (count++ == 0) first = k;
-      values[k] = no_value;
-    }
-    notes.push_back({Severity::warning,
-                     fmt::format("{}: {} of {} samples are at the limits of the range ({}), from "
-                                 "{:.2f} s on, and are not used: record with a wider range",
-                                 channel.name, count, values.size(),
-                                 in_words(ends[i], channel.unit), recording.time.at(first))});
+    for (const std::size_t k : found[i].samples) values[k] = no_value;
+    notes.push_back(note_on(found[i], channel, recording));
+  }
+  return notes;
+}
+
+std::vector<Note> drop_saturated_rests(const std::vector<std::size_t>& channels,
+                                       Recording& recording) {
+  constexpr double around_s = 0.5, usual_rate_hz = 100.0;
+  const double rate_hz = recording.time.rate_hz > 0.0 ? recording.time.rate_hz : usual_rate_hz;
+  const auto around = static_cast<std::size_t>(std::ceil(around_s * rate_hz));
+  const std::vector<Saturated> found = saturated(channels, recording);
+  std::vector<Note> notes;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (found[i].samples.size() < around) continue;
+    Channel& channel = recording.channels[channels[i]];
+    std::vector<double>& values = channel.values.edit();
+    std::size_t next = 0;
+    for (const std::size_t k : found[i].samples)
+      for (next = std::max(next, k - std::min(k, around));
+           next < std::min(values.size(), k + around + 1); ++next)
+        values[next] = no_value;
+    notes.push_back(note_on(found[i], channel, recording));
   }
   return notes;
 }

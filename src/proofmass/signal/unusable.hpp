@@ -31,7 +31,9 @@ struct RangeEnds {
 /// - it occurs three times or more in a row, reached and left more steeply than a crest in
 ///   quantisation steps would be, either while another axis moves, since a sensor at rest may stay
 ///   at its extreme as well, or eight times and more on an axis whose noise changes all other
-///   values; or
+///   values;
+/// - it occurs eight times as often as each of its neighbours, while another axis changes and noise
+///   of two quantisation steps or more changes all other values of this one; or
 /// - audit() finds a rail there (Clipping::rail), and it is not merely the level at rest: of at
 ///   least half the largest magnitude, or a fifth of the range away from the median.
 ///
@@ -42,6 +44,12 @@ struct RangeEnds {
 /// NaN, since the true ones may lie anywhere beyond it. Returns a warning for each channel that has
 /// any, with their number, the ends and the first time.
 std::vector<Note> drop_saturated(const std::vector<std::size_t>& channels, Recording& recording);
+
+/// As drop_saturated(), for what counts at rest: with half a second before and after, since the
+/// mean of noise that is cut off at one side is biased; and only channels that are at an end for
+/// half a second or more in all, since a motion between rests may well exceed the range.
+std::vector<Note> drop_saturated_rests(const std::vector<std::size_t>& channels,
+                                       Recording& recording);
 
 /// Makes the values of each sensor, of one to three channels, NaN where they are stuck
 /// (stuck_intervals()), but for the first of them; also where another sensor of the same logger is

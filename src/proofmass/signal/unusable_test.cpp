@@ -108,6 +108,43 @@ TEST(Saturation, DropsTheValuesOfTheChannelsThatAreNamed) {
   EXPECT_TRUE(drop_saturated({1}, recording).empty());
 }
 
+/// Rests of 3 s at -1.3, 0.6, 1.02 and 0.2, with noise, in steps of 0.002, between limits.
+std::vector<double> positions(double limit, std::uint64_t seed) {
+  std::vector<double> out;
+  Random random(seed, "noise");
+  for (const double level : {-1.3, 0.6, 1.02, 0.2})
+    for (int k = 0; k < 300; ++k)
+      out.push_back(
+          std::clamp(std::round((level + 0.02 * random.normal()) / 0.002) * 0.002, -limit, limit));
+  return out;
+}
+
+TEST(Saturation, OfRestsNearTheLimitTakesTheirSurroundings) {
+  Recording recording = of(positions(1.0, 1));
+  recording.channels.push_back({"acc_y", *parse_unit("m/s^2"), positions(10.0, 2)});
+  Recording unlimited = of(positions(10.0, 1));
+  unlimited.channels.push_back(recording.channels[1]);
+  EXPECT_TRUE(drop_saturated_rests({0, 1}, unlimited).empty());
+  const std::vector<Note> notes = drop_saturated_rests({0, 1}, recording);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_THAT(notes[0].text, testing::HasSubstr("limits of the range (-1 and 1 m/s^2)"));
+  const View<double> values = recording.channels[0].values;
+  EXPECT_TRUE(std::isfinite(values[400]));
+  EXPECT_TRUE(std::isfinite(values[1000]));
+  // At the third level the noise itself reaches below the limit in one of six.
+  EXPECT_EQ(
+      std::ranges::count_if(values.subspan(550, 400), [](double v) { return !std::isnan(v); }), 0);
+}
+
+TEST(Saturation, OfAShortMotionBetweenRestsConcernsNone) {
+  Recording recording = of(stroke(1000, 1e-3, 0.0, 1.0));
+  recording.channels.push_back(
+      {"acc_y", *parse_unit("m/s^2"), across(stroke(1000, 1e-3, 0.0, 2.0), 0.1)});
+  recording.time.rate_hz = 1000.0;
+  EXPECT_TRUE(drop_saturated_rests({0, 1}, recording).empty());
+  EXPECT_FALSE(drop_saturated({0, 1}, recording).empty());
+}
+
 /// At rest with noise and in motion by turns, in steps; from `stuck` on the same value for 3 s.
 std::vector<double> logged(double noise, double step, std::uint64_t seed, std::size_t stuck) {
   std::vector<double> out;
