@@ -130,11 +130,16 @@ class LiveWheel final : public LiveAnalysis {
     if (!filter_->is_lost()) return give(epoch.time_s, out);
     notes_.push_back({Severity::warning, "the wheel was lost at " + at_second(epoch.time_s) +
                                              " s and is searched again: turns may be lost"});
-    turns_std_rad_ += rad_per_turn;
+    turns_std_rad_ += std::max(rad_per_turn, filter_->std_before_rad());
+    unseen_jerk_psd_ = filter_->unseen_jerk_psd();
     forget();
   }
 
+  /// Begins with a measurement, at which the search gives angle and speed.
   void gather(const LiveEpoch& epoch) {
+    bool is_measured = false;
+    for (int s = 0; s < S; ++s) is_measured |= epoch.has(static_cast<std::size_t>(s));
+    if (gathered_.empty() && !is_measured) return;
     gathered_.push_back(epoch);
     given_rad_.push_back(filter_ ? *last_.angle_rad : std::numeric_limits<double>::quiet_NaN());
     const bool is_long = epoch.time_s - gathered_.front().time_s >= longest_start_s;
@@ -261,9 +266,13 @@ class LiveWheel final : public LiveAnalysis {
   void count_on(double time_s) {
     turned_rad_ = 0.0;
     if (!last_.angle_rad) return;
-    const double here = std::isnan(given_rad_.front())
-                            ? *last_.angle_rad + last_.speed_radps * (time_s - last_.time_s)
-                            : given_rad_.front();
+    double here = given_rad_.front();
+    if (std::isnan(here)) {
+      const double since_s = time_s - last_.time_s;
+      here = *last_.angle_rad + last_.speed_radps * since_s;
+      turns_std_rad_ =
+          std::hypot(turns_std_rad_, std::sqrt(unseen_jerk_psd_ * std::pow(since_s, 5) / 20.0));
+    }
     turned_rad_ = rad_per_turn * std::round((here - filter_->angle_rad()) / rad_per_turn);
   }
 
@@ -300,9 +309,10 @@ class LiveWheel final : public LiveAnalysis {
   double gathered_from_rad_ = 0.0;  ///< the filter's angle at the first of them, or a later one
   double pause_s_, resume_s_ = -std::numeric_limits<double>::infinity();
   LastRow last_;
-  double turned_rad_ = 0.0;      ///< whole turns between what is given and the filter's angle
-  double widest_std_rad_ = 0.0;  ///< given since the filter started, without that of whole turns
-  double turns_std_rad_ = 0.0;   ///< of the whole turns given, since the wheel was lost
+  double turned_rad_ = 0.0;       ///< whole turns between what is given and the filter's angle
+  double widest_std_rad_ = 0.0;   ///< given since the filter started, without that of whole turns
+  double turns_std_rad_ = 0.0;    ///< of the whole turns given, since the wheel was lost
+  double unseen_jerk_psd_ = 0.0;  ///< of the filter that lost it
   std::vector<Note> notes_;
   std::vector<std::string> said_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "proofmass/core/contract.hpp"
 
@@ -22,7 +23,6 @@ GyroJerk::GyroJerk(double rate_hz, double noise_variance)
   PM_EXPECTS(rate_hz > 0.0);
   const double h = static_cast<double>(apart_) / rate_hz;
   per_square_ = 1.5 / (h * h * h);
-  span_s_ = 2.0 * h;
   decay_ = std::exp(-0.5 / static_cast<double>(apart_));
 }
 
@@ -32,11 +32,14 @@ void GyroJerk::put(double speed_radps) {
   at_ = (at_ + 1) % size;
   psd_ *= decay_;
   const double first = last_[at_], middle = last_[(at_ + apart_) % size];
-  const double change = speed_radps - first;
-  mean_accel_radps2_ = std::isnan(change) ? 0.0 : change / span_s_;
   const double second = speed_radps - 2.0 * middle + first;
+  const double before = std::exchange(second_, second);
   if (std::isnan(second)) return;
-  psd_ = std::max(psd_, per_square_ * std::max(second * second - noise2_, 0.0));
+  // A single outlier is no jerk: it changes the speed at one measurement only.
+  double least2 = second * second;
+  if (apart_ > 1 && !std::isnan(before))
+    least2 = before * second > 0.0 ? std::min(least2, before * before) : 0.0;
+  psd_ = std::max(psd_, per_square_ * std::max(least2 - noise2_, 0.0));
 }
 
 double GyroJerk::add(double time_s, double speed_radps) {

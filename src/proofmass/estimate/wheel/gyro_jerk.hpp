@@ -23,11 +23,9 @@ class GyroJerk {
   /// the rows that the time shows to be lost, are missing in the differences: a change of speed
   /// across a gap of more than h is no jerk.
   [[nodiscard]] double add(double time_s, double speed_radps);
-  /// Mean acceleration, rad/s², over the last 2 h; 0 without measurements.
-  [[nodiscard]] double mean_accel_radps2() const { return mean_accel_radps2_; }
 
  private:
-  /// Appends to the ring; updates the density and the mean acceleration where their speeds exist.
+  /// Appends to the ring; updates the density where its speeds exist.
   void put(double speed_radps);
 
   double rate_hz_;
@@ -38,7 +36,7 @@ class GyroJerk {
   std::vector<double> last_;  ///< a ring of 2 `apart_` + 1 speeds, NaN where missing
   std::size_t at_ = 0;        ///< of the oldest in the ring
   double last_s_ = no_value;
-  double span_s_, mean_accel_radps2_ = 0.0;
+  double second_ = no_value;  ///< the last second difference
   double psd_ = 0.0;
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "proofmass/core/contract.hpp"
+#include "proofmass/core/statistics.hpp"
 #include "proofmass/estimate/live_columns.hpp"
 #include "proofmass/estimate/wheel/plane.hpp"
 #include "proofmass/signal/unusable.hpp"
@@ -133,7 +134,7 @@ void LiveEpochs::sum_up(const Block& samples, std::size_t row, double time_s) {
     const Triad& at = vectors_[i].channels;
     const Axis value{value_of(samples, at.x, row), value_of(samples, at.y, row),
                      value_of(samples, at.z, row)};
-    if (const char* why = why_not(i, value); why != nullptr) {
+    if (const char* why = why_not(i, value, time_s); why != nullptr) {
       rejected_[i] = {rejected_[i].count + 1, time_s, why};
       continue;
     }
@@ -142,12 +143,13 @@ void LiveEpochs::sum_up(const Block& samples, std::size_t row, double time_s) {
   }
 }
 
-const char* LiveEpochs::why_not(std::size_t vector, const Axis& value) {
+const char* LiveEpochs::why_not(std::size_t vector, const Axis& value, double time_s) {
   const bool is_rate = vectors_[vector].is_rate;
   const char* why = is_rate ? nullptr : why_unbelievable(value);
   if (is_rate && !std::ranges::all_of(value, [](double x) { return std::isfinite(x); }))
     why = "not a finite number";
   if (why != nullptr) return why;
+  if (repeats_[vector].is_repeated(value, time_s)) return "the same as the one before";
   bool at_end = false;
   for (std::size_t axis = 0; axis < 3; ++axis) at_end |= ranges_[vector][axis].ends_at(value[axis]);
   return at_end ? "at the limit of its range" : nullptr;
@@ -167,6 +169,38 @@ bool LiveEpochs::Range::ends_at(double value) {
   last_ = value;
   most_ = std::max(most_, std::abs(value));
   return equal_ >= fewest && std::abs(value) == most_ && signal::is_cut_off(equal_, slope_, step_);
+}
+
+bool LiveEpochs::Repeats::is_repeated(const Axis& value, double time_s) {
+  constexpr double longest_s = 3.0;
+  bool repeated = added_ > 0;
+  for (std::size_t i = 0; i < 3; ++i) repeated = repeated && value[i] == axes_[i].before[0];
+  if (repeated) return has_noise() && time_s - last_change_s_ < longest_s;
+  last_change_s_ = time_s;
+  for (std::size_t i = 0; i < 3; ++i) add(value[i], axes_[i]);
+  ++added_;
+  return false;
+}
+
+void LiveEpochs::Repeats::add(double value, AxisNoise& axis) const {
+  constexpr std::size_t each = 32;
+  constexpr double fourth_difference = 70.0;  // 1 + 16 + 36 + 16 + 1
+  auto& past = axis.before;
+  const double step = std::abs(value - past[0]);
+  if (added_ > 0 && step > 0.0) axis.step = std::min(axis.step, step);
+  if (added_ >= past.size())
+    axis.sum2 += square(value - 4.0 * past[0] + 6.0 * past[1] - 4.0 * past[2] + past[3]);
+  if (added_ % each == 0) {
+    if (added_ > each) axis.noise2 = std::min(axis.noise2, axis.sum2 / (fourth_difference * each));
+    axis.sum2 = 0.0;
+  }
+  past = {value, past[0], past[1], past[2]};
+}
+
+bool LiveEpochs::Repeats::has_noise() const {
+  return std::ranges::any_of(axes_, [](const AxisNoise& axis) {
+    return axis.noise2 < unknown && axis.noise2 > square(axis.step);
+  });
 }
 
 bool LiveEpochs::close() {

@@ -82,6 +82,28 @@ class LiveEpochs {
     double step_ = std::numeric_limits<double>::infinity();  ///< the smallest
     std::size_t equal_ = 1;
   };
+  /// Whether a measurement repeats the one before, as from a logger that is stuck, although the
+  /// noise of an axis exceeds its quantisation step. The noise is that of the quietest 32
+  /// measurements, from fourth differences, which contain hardly any motion. A sensor may still
+  /// come to rest without noise: repetitions count again after 3 s.
+  class Repeats {
+   public:
+    bool is_repeated(const std::array<double, 3>& value, double time_s);
+
+   private:
+    static constexpr double unknown = std::numeric_limits<double>::infinity();
+    struct AxisNoise {
+      std::array<double, 4> before{};  ///< newest first
+      double sum2 = 0.0;               ///< of the fourth differences since the last 32
+      double noise2 = unknown, step = unknown;
+    };
+    void add(double value, AxisNoise& axis) const;
+    [[nodiscard]] bool has_noise() const;
+
+    std::array<AxisNoise, 3> axes_{};
+    std::size_t added_ = 0;  ///< measurements without repetitions
+    double last_change_s_ = 0.0;
+  };
   struct Rejected {
     std::size_t count = 0;
     double last_s = 0.0;
@@ -93,7 +115,9 @@ class LiveEpochs {
   [[nodiscard]] bool follows(double time_s);
   void learn_rate(double time_s);
   void sum_up(const Block& samples, std::size_t row, double time_s);
-  [[nodiscard]] const char* why_not(std::size_t vector, const std::array<double, 3>& value);
+  [[nodiscard]] const char* why_not(std::size_t vector,
+                                    const std::array<double, 3>& value,
+                                    double time_s);
   [[nodiscard]] bool close();
 
   std::vector<LiveVector> vectors_;
@@ -113,6 +137,7 @@ class LiveEpochs {
   LiveEpoch epoch_;
 
   std::array<std::array<Range, 3>, most_live_vectors> ranges_{};
+  std::array<Repeats, most_live_vectors> repeats_{};
   std::array<Rejected, most_live_vectors> rejected_{};
   Rejected backwards_;
   std::vector<Note> notes_;

@@ -134,10 +134,49 @@ void LiveWheelFilter<S>::seat(int place) {
   moved.state.x.mean(first_place + place) += place_step_m;
 }
 
+/// The acceleration before this epoch, or 0 where it may be noise: a noisy factor of the rolling
+/// radius would make it seem known, the more so if it is that of this epoch's gyroscope.
+template <int S>
+double LiveWheelFilter<S>::significant_accel() const {
+  constexpr double most_std = 3.0;
+  const double accel = main_.x.mean(wheel::accel);
+  return std::abs(accel) > most_std * std::sqrt(main_.x.cov(wheel::accel, wheel::accel)) ? accel
+                                                                                         : 0.0;
+}
+
+/// Where nothing is measured, the acceleration may change as it does otherwise: without this the
+/// filter extrapolates the last one, and a turn may be lost unnoticed. White jerk of 2 σ²/τ, as of
+/// accelerations of variance σ² with a correlation time τ.
+template <int S>
+double LiveWheelFilter<S>::unseen_jerk_psd() const {
+  constexpr double correlation_s = 1.0;
+  return 2.0 * accel2_ / correlation_s;
+}
+
+/// Whether an epoch has no measurement, or is the first one after a gap.
+template <int S>
+bool LiveWheelFilter<S>::is_unseen(const LiveEpoch& epoch) const {
+  constexpr double longest_seen_s = 0.1;
+  for (int s = 0; s < S; ++s)
+    if (epoch.has(static_cast<std::size_t>(s))) return now_.epochs[1].dt_s >= longest_seen_s;
+  return true;
+}
+
+/// The mean square of the acceleration over some 20 s, less what is uncertain of it.
+template <int S>
+void LiveWheelFilter<S>::learn_accel() {
+  constexpr double memory_s = 20.0;
+  const double square_now =
+      std::max(square(main_.x.mean(wheel::accel)) - main_.x.cov(wheel::accel, wheel::accel), 0.0);
+  const double share =
+      std::min(now_.epochs[1].dt_s / std::min(time_s_ - first_time_s_, memory_s), 1.0);
+  if (time_s_ > first_time_s_) accel2_ += (square_now - accel2_) * share;
+}
+
 template <int S>
 void LiveWheelFilter<S>::read(const LiveEpoch& epoch) {
   now_.epochs[1].dt_s = epochs_ == 0 ? 0.0 : epoch.time_s - time_s_;
-  now_.epochs[1].jerk_psd = 0.0;
+  now_.epochs[1].jerk_psd = is_unseen(epoch) ? unseen_jerk_psd() : 0.0;
   time_s_ = epoch.time_s;
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
     const Mat<3>& f = epoch.vectors[s];
@@ -152,7 +191,7 @@ void LiveWheelFilter<S>::read(const LiveEpoch& epoch) {
     const double speed = along(rate, axis);
     sensor.speed_radps[0] = speed;
     jerk_psd = std::max(jerk_psd, jerks_[s].add(epoch.time_s, speed));
-    (*mean_accel_)[1] = jerks_[s].mean_accel_radps2();
+    (*mean_accel_)[1] = significant_accel();
     sensor.rate_u_radps[0] = along(rate, u) - sensor.leak_u.at(speed);
     sensor.rate_v_radps[0] = along(rate, v) - sensor.leak_v.at(speed);
   }
@@ -206,10 +245,12 @@ template <int S>
 void LiveWheelFilter<S>::step(const LiveEpoch& epoch) {
   read(epoch);
   if (epochs_ == 0) first_time_s_ = stretch_start_s_ = time_s_;
-  if (time_s_ > first_time_s_ + 1.0 && predicted_std_rad() > lost_std_rad) lost_ = true;
+  std_before_rad_ = predicted_std_rad();
+  if (time_s_ > first_time_s_ + 1.0 && std_before_rad_ > lost_std_rad) lost_ = true;
   set_variance();
   advance_all();
   judge();
+  if (step_.count > 0) learn_accel();
   if (time_s_ - stretch_start_s_ >= stretch_s) end_stretch();
 }
 

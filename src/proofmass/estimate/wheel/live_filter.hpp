@@ -48,6 +48,10 @@ class LiveWheelFilter {
   [[nodiscard]] LiveWheelRow row() const;
   /// Diverged beyond covariance inflation: the wheel must be reinitialised.
   [[nodiscard]] bool is_lost() const { return lost_; }
+  /// Uncertainty of the angle before the last epoch's measurements.
+  [[nodiscard]] double std_before_rad() const { return std_before_rad_; }
+  /// Density of the white jerk, rad²/s⁵, where nothing is measured.
+  [[nodiscard]] double unseen_jerk_psd() const;
   [[nodiscard]] double angle_rad() const { return main_.x.mean(wheel::angle); }
   [[nodiscard]] double speed_radps() const { return main_.x.mean(wheel::speed); }
 
@@ -97,6 +101,9 @@ class LiveWheelFilter {
 
   void narrow_constants(const Eigen::MatrixXd& found_cov);
   void seat(int place);
+  [[nodiscard]] double significant_accel() const;
+  [[nodiscard]] bool is_unseen(const LiveEpoch& epoch) const;
+  void learn_accel();
   void read(const LiveEpoch& epoch);
   void set_variance();
   void advance_all();
@@ -122,7 +129,7 @@ class LiveWheelFilter {
   std::array<double, 2> variance_m2ps4_;                      ///< of each sensor's measurements
   std::array<std::optional<std::size_t>, 2> gyroscope_at_{};  ///< among an epoch's vectors
   std::vector<GyroJerk> jerks_;                               ///< one for each sensor
-  /// At epoch 1, by a gyroscope: see WheelModel::mean_accel.
+  /// At epoch 1, significant_accel(): see WheelModel::mean_accel.
   std::shared_ptr<std::vector<double>> mean_accel_ = std::make_shared<std::vector<double>>(2, 0.0);
   double alignment_variance_rad2_ = 0.0, delay_std_s_ = 0.0;
 
@@ -141,9 +148,11 @@ class LiveWheelFilter {
   std::array<Noise, 2> noise_{}, speed_noise_{};
   PerChannel expected_{};  ///< squares of the innovations
   double first_time_s_ = 0.0, stretch_start_s_ = 0.0, nis_ = 0.0, since_loosened_s_ = 0.0;
+  double std_before_rad_ = 0.0;
   double surprise_ = 1.0;  ///< smoothed NIS per channel
   Recent recent_, recent_speed_;
   Colour colour_;
+  double accel2_ = 0.0;  ///< mean square of the acceleration, rad²/s⁴
   int loosened_ = 0;
   bool lost_ = false;
 };
