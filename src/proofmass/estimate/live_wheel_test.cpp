@@ -234,6 +234,106 @@ TEST(LiveWheel, LeavesOutWhatNoAccelerometerCanHaveMeantAndSaysSo) {
   EXPECT_TRUE(one.fed.says("their time does not rise"));
 }
 
+/// Its speed swings between 5 and 8 rad/s.
+Drive swinging() {
+  Drive drive{{0.3, 5.0}, {}};
+  for (int k = 0; k < 10; ++k) drive.stages.push_back({3.0, k % 2 == 0 ? 8.0 : 5.0});
+  return drive;
+}
+
+/// Errors of the angle, whole turns included, or of the speed, in its standard deviations, from 6 s
+/// on.
+std::vector<double> errors_in_std(const Followed& run,
+                                  const Drive& drive,
+                                  const std::string& what) {
+  std::vector<double> out;
+  const double first = run["angle"].front() - drive.at(run.fed.rows.stamps_s.front()).angle_rad;
+  const double turned = rad_per_turn * std::round(first / rad_per_turn);
+  for (std::size_t k = 0; k < run.fed.rows.rows(); ++k) {
+    const double time_s = run.fed.rows.stamps_s[k];
+    if (time_s < 6.0) continue;
+    const test::Turning now = drive.at(time_s);
+    const double truth = what == "angle" ? now.angle_rad + turned : now.speed_radps;
+    out.push_back(std::abs(run[what][k] - truth) / run[what + "_std"][k]);
+  }
+  return out;
+}
+
+double share_held(const Followed& run, const Drive& drive, const std::string& what) {
+  const std::vector<double> errors = errors_in_std(run, drive, what);
+  return static_cast<double>(std::ranges::count_if(errors, [](double e) { return e < 1.96; })) /
+         static_cast<double>(errors.size());
+}
+
+double largest(const Followed& run, const Drive& drive, const std::string& what) {
+  return std::ranges::max(errors_in_std(run, drive, what));
+}
+
+TEST(LiveWheel, RepeatedRowsOfAStuckLoggerAreNoMeasurements) {
+  const Drive drive = swinging();
+  Stream stream = one_sensor(drive);
+  for (const std::size_t from : {1000U, 1800U})
+    for (auto& axis : stream.channels)
+      for (std::size_t k = from; k < from + 120; ++k) axis[k] = axis[from];
+  const Followed one = follow(stream, options_for(1));
+  EXPECT_TRUE(one.fed.says("the same as the one before"));
+  EXPECT_GT(share_held(one, drive, "angle"), 0.93);
+  EXPECT_GT(share_held(one, drive, "speed"), 0.93);
+}
+
+TEST(LiveWheel, RepeatedRowsOfASensorWithoutNoiseAtRestAreMeasurements) {
+  const Drive drive{{0.3, 5.0}, {{8.0, 5.0}, {2.0, 0.0}, {10.0, 0.0}}};
+  Stream stream = one_sensor(drive);
+  for (auto& axis : stream.channels)
+    for (double& value : axis) value = 0.5 * std::round(value / 0.5);
+  const Followed one = follow(stream, options_for(1));
+  EXPECT_FALSE(one.fed.says("the same as the one before"));
+  EXPECT_FALSE(one.fed.says("turns may be lost"));
+}
+
+// The acceleration before the gap does not last.
+TEST(LiveWheel, TheTurnsAcrossAGapAreAsUncertainAsTheSpeedChanges) {
+  const Drive drive = swinging();
+  Stream stream = one_sensor(drive);
+  constexpr std::size_t from = 1351, to = 1540;
+  const auto cut = [](auto& values) { values.erase(values.begin() + from, values.begin() + to); };
+  cut(stream.stamps_s);
+  for (auto& axis : stream.channels) cut(axis);
+  EXPECT_LT(largest(follow(stream, options_for(1)), drive, "angle"), 4.0);
+}
+
+/// Of a wheel on a bench.
+Stream with_gyroscope(const Drive& drive, double rate_hz, double noise_mps2) {
+  Mount mount;
+  mount.place_m = 0.1;
+  mount.bias_mps2 = {0.1, -0.15};
+  mount.noise_mps2 = noise_mps2;
+  return stream_of(
+      {test::record_with_gyroscope(drive, mount, rate_hz, {}, [](double) { return 0.0; })});
+}
+
+// A gentle swing of the speed shows no rolling radius.
+TEST(LiveWheel, AGyroscopeOnABenchKeepsTheAngle) {
+  Drive drive{{0.3, 2.4}, {}};
+  for (int k = 0; k < 12; ++k) drive.stages.push_back({5.0, k % 2 == 0 ? 3.2 : 2.4});
+  LiveWheelOptions options = options_for(1, std::nullopt);
+  options.gyroscopes = {{"gyroscope", 3, 4, 5}};
+  const Followed one = follow(with_gyroscope(drive, 200.0, 0.1), options);
+  EXPECT_GT(share_held(one, drive, "angle"), 0.93);
+  EXPECT_GT(share_held(one, drive, "speed"), 0.93);
+}
+
+TEST(LiveWheel, SingleOutliersOfAllChannelsCostNoTurn) {
+  LiveWheelOptions options = options_for(1, std::nullopt);
+  options.gyroscopes = {{"gyroscope", 3, 4, 5}};
+  const Drive drive = swinging();
+  Stream stream = with_gyroscope(drive, 100.0, 0.05);
+  test::Normal normal(7);
+  for (std::size_t k = 700; k < stream.stamps_s.size(); k += 151)
+    for (auto& axis : stream.channels) axis[k] += 120.0 * normal();
+  EXPECT_LT(largest(follow(stream, options), drive, "angle"), 4.0);
+}
+
 TEST(LiveWheel, SearchesTheWheelAgainAfterALongGap) {
   Stream stream = one_sensor();
   for (std::size_t k = 1000; k < stream.stamps_s.size(); ++k) stream.stamps_s[k] += 60.0;

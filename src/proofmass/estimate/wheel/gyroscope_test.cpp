@@ -152,5 +152,11 @@ TEST(GyroJerk, DecaysAfterAnIrregularityAndSeesNoStepAcrossAGap) {
   EXPECT_GT(seen, 0.5 * most);
 }
 
+TEST(GyroJerk, IsNoSingleOutlier) {
+  GyroJerk jerk(100.0, 1e-4);
+  for (int k = 0; k < 100; ++k)
+    EXPECT_LT(jerk.add(0.01 * k, k == 50 ? 30.0 : 2.0 + 0.01 * k), 1e-9) << k;
+}
+
 }  // namespace
 }  // namespace proofmass::estimate::wheel_gyroscope_test

@@ -94,7 +94,6 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelOptions& options,
   model_.places_held = true;
   model_.with_ripple = start.with_ripple;
   model_.orders = start.orders;
-  if (model_.with_gyro) model_.mean_accel = mean_accel_;
   scale_motion(model_, 1.0);
   model_.noise.bias_walk_psd = std::max(model_.noise.bias_walk_psd, least_bias_walk_psd);
   main_ = prior_state<S>(start.prior);
@@ -105,6 +104,7 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelOptions& options,
     narrow_constants(start.constants_cov);
   else  // a few seconds of pushes leave bias, scale and rolling radius along a line
     main_.x.mean.template segment<of_gyro>(gyro) = believed;
+  hold_rolling_radius();
   places_cov_ = start.places_cov;
   for (int i = 0; i < places; ++i) seat(i);
   rivals_[0] = {rival_factor, main_};
@@ -127,21 +127,23 @@ void LiveWheelFilter<S>::narrow_constants(const Eigen::MatrixXd& found_cov) {
       by.asDiagonal() * found_cov.topLeftCorner<count, count>() * by.asDiagonal();
 }
 
+/// A gentle swing of the speed tilts the apparent gravity as another scale of the gyroscope turns
+/// the wheel, and the noise of the acceleration, as the coefficient of the radius, makes it seem
+/// known: a filter that estimates it ends where neither its intervals nor its prior allow. It keeps
+/// what the search has found.
+template <int S>
+void LiveWheelFilter<S>::hold_rolling_radius() {
+  constexpr int rolling = wheel::rolling(S);
+  if (model_.with_gyro) rolling_std_m_ = std::sqrt(main_.x.cov(rolling, rolling));
+  main_.x.cov.row(rolling).setZero();
+  main_.x.cov.col(rolling).setZero();
+}
+
 template <int S>
 void LiveWheelFilter<S>::seat(int place) {
   Moved& moved = moved_[static_cast<std::size_t>(place)];
   moved.state = main_;
   moved.state.x.mean(first_place + place) += place_step_m;
-}
-
-/// The acceleration before this epoch, or 0 where it may be noise: a noisy factor of the rolling
-/// radius would make it seem known, the more so if it is that of this epoch's gyroscope.
-template <int S>
-double LiveWheelFilter<S>::significant_accel() const {
-  constexpr double most_std = 3.0;
-  const double accel = main_.x.mean(wheel::accel);
-  return std::abs(accel) > most_std * std::sqrt(main_.x.cov(wheel::accel, wheel::accel)) ? accel
-                                                                                         : 0.0;
 }
 
 /// Where nothing is measured, the acceleration may change as it does otherwise: without this the
@@ -191,7 +193,6 @@ void LiveWheelFilter<S>::read(const LiveEpoch& epoch) {
     const double speed = along(rate, axis);
     sensor.speed_radps[0] = speed;
     jerk_psd = std::max(jerk_psd, jerks_[s].add(epoch.time_s, speed));
-    (*mean_accel_)[1] = significant_accel();
     sensor.rate_u_radps[0] = along(rate, u) - sensor.leak_u.at(speed);
     sensor.rate_v_radps[0] = along(rate, v) - sensor.leak_v.at(speed);
   }
@@ -408,8 +409,13 @@ std::pair<Uncertain, Uncertain> LiveWheelFilter<S>::motion_of(const Gaussian<3>&
     variance = std::max(colour_.factor, 1.0) * std::max(variance, 0.0);
     return Uncertain{value, std::sqrt(variance + square(rate * delay_std_s_) + more)};
   };
-  return {uncertain(now.angle, now.by_angle, now.speed, by_places(0) + alignment_variance_rad2_),
-          uncertain(now.speed, now.by_speed, now.accel, by_places(1))};
+  // The hub's acceleration tilts the apparent gravity, and changes within about a second.
+  constexpr double changes_per_s = 1.0;
+  const double lean_s2 = rolling_std_m_ / now_.gravity_mps2;
+  const double angle_more = by_places(0) + alignment_variance_rad2_ + square(lean_s2 * now.accel);
+  const double speed_more = by_places(1) + square(lean_s2 * changes_per_s) * accel2_;
+  return {uncertain(now.angle, now.by_angle, now.speed, angle_more),
+          uncertain(now.speed, now.by_speed, now.accel, speed_more)};
 }
 
 template <int S>
