@@ -72,11 +72,18 @@ class FixComparison {
     if (options_.fixes.size() > most_fixes) return wrong;
     const std::size_t most = options_.fixes.size() / 4;
     while (wrong.size() < most) {
-      const auto fix = drop_a_fix();
-      if (!fix) break;
-      wrong.push_back(*fix);
+      const std::vector<PositionFix> fixes = drop_the_worst(most - wrong.size());
+      if (fixes.empty()) break;
+      wrong.insert(wrong.end(), fixes.begin(), fixes.end());
     }
     return wrong;
+  }
+
+  /// Uses these fixes instead.
+  void use(std::vector<PositionFix> fixes) {
+    TrackOptions options = options_;
+    options.fixes = std::move(fixes);
+    take(std::move(options));
   }
 
  private:
@@ -102,29 +109,53 @@ class FixComparison {
     return true;
   }
 
-  /// Removes the fix without which the others have the highest density, if that is higher
-  /// than with it and the fix is far from the position without it.
-  std::optional<PositionFix> drop_a_fix() {
-    constexpr double far = 6.0, higher = 2.0;
-    double best = -std::numeric_limits<double>::infinity();
-    std::size_t worst = 0;
-    for (std::size_t i = 0; i < options_.fixes.size(); ++i) {
-      const double value = log_density(signal_, without_fix(i));
-      if (!(value > best)) continue;
-      best = value;
-      worst = i;
+  /// Fixes [first, end).
+  struct FixRange {
+    std::size_t first = 0, end = 0;
+  };
+
+  /// Those that may be wrong together: each alone, and the repetitions of one position, as of a
+  /// tracker that is stuck.
+  [[nodiscard]] std::vector<FixRange> suspects(std::size_t most) const {
+    const std::vector<PositionFix>& all = options_.fixes;
+    std::vector<FixRange> out;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      out.push_back({i, i + 1});
+      std::size_t end = i + 1;
+      while (end < all.size() && all[end].position_m == all[i].position_m) ++end;
+      const bool begins = i == 0 || all[i - 1].position_m != all[i].position_m;
+      if (begins && end > i + 2 && end - i - 1 <= most) out.push_back({i + 1, end});
     }
-    const PositionFix fix = options_.fixes[worst];
-    const auto without = solve(signal_, without_fix(worst));
-    if (!without || best < log_density_ + higher || deviation(*without, fix) < far)
-      return std::nullopt;
-    take(without_fix(worst));
-    return fix;
+    return out;
   }
 
-  [[nodiscard]] TrackOptions without_fix(std::size_t i) const {
+  /// Removes the fix, or the repetitions of one, without which the others have the highest density,
+  /// if that is higher than with them and one of them is far from the position without them.
+  /// Returns those removed, `most` or fewer.
+  std::vector<PositionFix> drop_the_worst(std::size_t most) {
+    constexpr double far = 6.0, higher = 2.0;
+    double best = -std::numeric_limits<double>::infinity();
+    FixRange worst;
+    for (const FixRange& range : suspects(most)) {
+      const double value = log_density(signal_, without_fixes(range));
+      if (!(value > best)) continue;
+      best = value;
+      worst = range;
+    }
+    std::vector<PositionFix> fixes(
+        options_.fixes.begin() + static_cast<std::ptrdiff_t>(worst.first),
+        options_.fixes.begin() + static_cast<std::ptrdiff_t>(worst.end));
+    const auto without = solve(signal_, without_fixes(worst));
+    const auto is_far = [&](const PositionFix& fix) { return deviation(*without, fix) >= far; };
+    if (!without || best < log_density_ + higher || std::ranges::none_of(fixes, is_far)) return {};
+    take(without_fixes(worst));
+    return fixes;
+  }
+
+  [[nodiscard]] TrackOptions without_fixes(const FixRange& range) const {
     TrackOptions without = options_;
-    without.fixes.erase(without.fixes.begin() + static_cast<std::ptrdiff_t>(i));
+    without.fixes.erase(without.fixes.begin() + static_cast<std::ptrdiff_t>(range.first),
+                        without.fixes.begin() + static_cast<std::ptrdiff_t>(range.end));
     return without;
   }
 
@@ -211,14 +242,23 @@ FixReview review_fixes(TrackSignal& signal,
                        AlongAxis& solved) {
   FixReview review;
   if (options.fixes.size() < fewest_fixes) return review;
+  std::vector<PositionFix> given = options.fixes;
   FixComparison fixes(signal, options, solved);
   if (rests_in_doubt) review.false_rests = fixes.drop_rests();
   review.delay_s = fixes.remove_delay();
   review.wrong = fixes.drop_wrong();
-  if (!review.wrong.empty()) {
-    if (!review.delay_s) review.delay_s = fixes.remove_delay();
-    if (rests_in_doubt) review.false_rests += fixes.drop_rests();
-  }
+  if (review.wrong.empty()) return review;
+  // A wrong fix may have looked like a delay of all.
+  const double delay_s = review.delay_s ? review.delay_s->value : 0.0;
+  std::erase_if(given, [&](const PositionFix& fix) {
+    return std::ranges::any_of(review.wrong, [&](const PositionFix& wrong) {
+      return wrong.time_s == fix.time_s - delay_s;
+    });
+  });
+  if (review.delay_s) fixes.use(std::move(given));
+  review.delay_s = fixes.remove_delay();
+  for (PositionFix& wrong : review.wrong) wrong.time_s += delay_s;
+  if (rests_in_doubt) review.false_rests += fixes.drop_rests();
   return review;
 }
 

@@ -126,6 +126,16 @@ TEST(TrackFixes, AWrongOneIsNotUsed) {
   EXPECT_LT(swing.inside(*solution)[1], 4.0);
 }
 
+TEST(TrackFixes, TheRepetitionsOfAStuckTrackerAreNotUsed) {
+  Swing swing(3);
+  TrackOptions options = swing.options(2.6137, 0.003);
+  for (std::size_t i = 10; i < 14; ++i) options.fixes[i].position_m = options.fixes[9].position_m;
+  const auto solution = estimate_track(swing.sensor(), options);
+  ASSERT_TRUE(solution) << solution.error().message;
+  EXPECT_EQ(solution->fix_review.wrong.size(), 4U);
+  EXPECT_LT(swing.inside(*solution)[1], 4.0);
+}
+
 TEST(TrackFixes, ADelayOfAllIsFoundAndSubtracted) {
   for (const double late_s : {0.06, -0.4}) {
     Swing swing(4);
