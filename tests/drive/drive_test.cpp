@@ -100,6 +100,36 @@ TEST(Drive, ConvergesWithFixesAndNoDimensionKnown) {
   }
 }
 
+// Reflections that shift the fixes for six seconds by 25 m: the speed at either end misled the
+// search for the offset of the clocks, and the first fixes that a filter accepts decide which it
+// rejects.
+TEST(Drive, FollowsNoFixesThatAreShiftedForSeconds) {
+  Scenario scenario{.name = "encoder-reflections"};
+  scenario.gyroscopes = scenario.circumference_known = false;
+  scenario.frame = scenario.fixes = scenario.encoders = true;
+  constexpr double shift_rad = 25.0 / 6.37e6;
+  for (std::uint64_t seed = 9361; seed < 9365; ++seed) {
+    World world = make_world(scenario, seed);
+    auto& fixes = world.fixes->fixes;
+    const double start_s = fixes.front().time_s, end_s = fixes.back().time_s;
+    for (const double share : {0.1, 0.4}) {
+      const double from_s = start_s + share * (end_s - start_s);
+      for (estimate::GnssFix& fix : fixes)
+        if (fix.time_s > from_s && fix.time_s < from_s + 6.0) fix.latitude_rad += shift_rad;
+    }
+    const auto solved = solve(world);
+    ASSERT_TRUE(solved.has_value()) << solved.error().message;
+    ASSERT_TRUE(solved->heading_start_rad.has_value()) << seed;
+    const Uncertain heading = *solved->heading_change_rad, distance = *solved->distance_m;
+    EXPECT_NEAR(heading.value, world.truth.heading_change_rad, 3.5 * heading.std) << seed;
+    EXPECT_NEAR(distance.value, world.truth.distance_m, 3.5 * distance.std) << seed;
+    EXPECT_LT(std::abs(std::remainder(
+                  solved->heading_start_rad->value - world.truth.heading_start_rad, rad_per_turn)),
+              3.5 * solved->heading_start_rad->std)
+        << seed;
+  }
+}
+
 double largest(const std::vector<double>& values) {
   double most = 0.0;
   for (const double value : values) most = std::max(most, std::abs(value));

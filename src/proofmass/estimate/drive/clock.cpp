@@ -157,6 +157,10 @@ Signal speed_of(const LocalFixes& fixes) {
         std::hypot(fixes.east_m[k] - fixes.east_m[back], fixes.north_m[k] - fixes.north_m[back]) /
         step_s);
   }
+  // Where a receiver jumps, the speed between its fixes is not the vehicle's.
+  constexpr double usual_share = 0.8, most = 2.0;
+  const double limit = most * quantile(speed.values, usual_share).value_or(0.0);
+  for (double& value : speed.values) value = std::min(value, limit);
   return speed;
 }
 

@@ -138,6 +138,29 @@ std::vector<Epoch> epochs_of(const Recorded& recorded, const Vehicle& vehicle) {
   return epochs;
 }
 
+namespace {
+
+struct NormalPoint {
+  std::size_t epoch;
+  double off_m;  // from the path
+};
+
+// A point far from the path gets its distance as standard deviation, as after reflections that last
+// for seconds. The filter alone would accept it where it comes first, and then reject the others.
+void doubt_far_points(const std::vector<NormalPoint>& points, std::vector<Epoch>& epochs) {
+  constexpr double far = 5.0, least_m = 3.0;
+  std::vector<double> off_m;
+  for (const NormalPoint& point : points) off_m.push_back(point.off_m);
+  const double most_m = std::max(least_m, far * median(std::move(off_m)).value_or(0.0));
+  for (const NormalPoint& point : points) {
+    if (!(point.off_m > most_m)) continue;
+    epochs[point.epoch].fix_variance_m2 += square(point.off_m);
+    epochs[point.epoch].fix_doubted = true;
+  }
+}
+
+}  // namespace
+
 void form_normal_points(const Vehicle& vehicle,
                         const std::vector<Mat<at::states>>& path,
                         double window_s,
@@ -151,6 +174,7 @@ void form_normal_points(const Vehicle& vehicle,
     return Mat<2>(now(0) + path[k](at::origin) + c * ahead - s * left,
                   now(1) + path[k](at::origin + 1) + s * ahead + c * left);
   };
+  std::vector<NormalPoint> points;
   std::size_t k = 0;
   while (k < epochs.size()) {
     if (std::isnan(epochs[k].fix_east_m)) {
@@ -177,7 +201,9 @@ void form_normal_points(const Vehicle& vehicle,
     epochs[middle].fix_north_m = expected(1) + median(north).value_or(0.0);
     epochs[middle].fix_variance_m2 = variance;
     epochs[middle].fix_after_s = path[middle](clock);
+    points.push_back({middle, std::hypot(median(east).value_or(0.0), median(north).value_or(0.0))});
   }
+  doubt_far_points(points, epochs);
 }
 
 void add_course(const Vehicle& vehicle, std::vector<Epoch>& epochs) {

@@ -264,8 +264,9 @@ void run_into(const AnyModel& model,
   const Gate gate{.huber = huber, .limit = reject_beyond};
   const FilterState<at::states> start{prior, 0};
   const auto forward = [&](std::size_t k, const StepOf<Model>& step) {
-    const bool has_fix = plain.with_fixes && !std::isnan((*plain.epochs)[k].fix_east_m);
-    const int constraints = (*plain.epochs)[k].direction == 0 ? 2 : 0;
+    const Epoch& epoch = (*plain.epochs)[k];
+    const bool has_fix = plain.with_fixes && !std::isnan(epoch.fix_east_m);
+    const int constraints = epoch.direction == 0 ? 2 : 0;
     if (has_fix) ++pass.fixes;
     for (int i = 0; i < step.count; ++i) {
       const auto& update = step.updates[static_cast<std::size_t>(i)];
@@ -274,7 +275,8 @@ void run_into(const AnyModel& model,
       pass.log_likelihood -= 0.5 * (std::log(update.expected) + nis);
       const bool of_fix =
           has_fix && i >= step.count - constraints - 2 && i < step.count - constraints;
-      if (of_fix && update.used && i == step.count - constraints - 1) ++pass.fixes_used;
+      if (of_fix && update.used && !epoch.fix_doubted && i == step.count - constraints - 1)
+        ++pass.fixes_used;
       pass.chi2 += nis;
       if (i < step.count - constraints) {
         pass.nis += nis;

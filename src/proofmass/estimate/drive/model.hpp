@@ -69,6 +69,7 @@ struct Epoch {
   double fix_east_m = missing, fix_north_m = missing;
   double fix_variance_m2 = 0.0;  ///< stated by the receiver, else 0
   double fix_after_s = 0.0;      ///< time of the fix, by its clock, minus time_s
+  bool fix_doubted = false;      ///< far from the path: its variance contains the distance
 };
 
 /// What is fixed while the filter runs.
