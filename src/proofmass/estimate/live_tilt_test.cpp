@@ -192,6 +192,30 @@ TEST(LiveTilt, MissingMeasurementsWidenTheBandAndAreReported) {
   EXPECT_GT(coverage(followed, base), 0.92);
 }
 
+// The rotation before a gap goes on through it in the model.
+TEST(LiveTilt, AfterAGapWithoutGyroscopeTheDirectionIsTheMeasuredOne) {
+  const auto roll = [](double t) { return 0.4 * std::sin(1.9 * t) + 0.3 * std::sin(0.7 * t); };
+  const auto pitch = [](double t) { return 0.4 * std::sin(1.3 * t + 1.0); };
+  TiltRecord record;
+  Random random(8, "noise");
+  for (int k = 0; k < 6000; ++k) {
+    const double t = 0.01 * k, in_ten = std::fmod(t, 10.0);
+    if (t > 10.0 && in_ten < 2.7) continue;
+    const Mat<3> force = force_at(roll(t), pitch(t));
+    record.time_s.push_back(t);
+    for (std::size_t i = 0; i < 3; ++i)
+      record.accel_mps2[i].push_back(force(static_cast<Eigen::Index>(i)) + 0.02 * random.normal());
+  }
+  const Followed followed = follow(record, options_for(record));
+  double largest = 0.0;
+  for (std::size_t k = 800; k < followed.fed.rows.rows(); ++k) {
+    const double t = followed.fed.rows.stamps_s[k];
+    largest = std::max({largest, std::abs(followed["roll"][k] - roll(t)) / followed["roll_std"][k],
+                        std::abs(followed["pitch"][k] - pitch(t)) / followed["pitch_std"][k]});
+  }
+  EXPECT_LT(largest, 5.0);
+}
+
 TEST(LiveTilt, WithoutGravityInTheReadingsItSaysSo) {
   const TiltRecord record = still_record(force_at(0.3, -0.2, 1.0), 0.02, 300, 6);
   EXPECT_TRUE(follow(record, options_for(record)).fed.says("gravity was removed"));

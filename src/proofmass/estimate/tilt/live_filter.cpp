@@ -217,18 +217,67 @@ void LiveTiltFilter::follow_motion() {
                             least_cov(known_.gravity_mps2);
 }
 
+/// Angular acceleration, rad/s²/√Hz, of a base without gyroscope where nothing is measured: its
+/// rate of rotation may change as it does otherwise. White angular acceleration of density 2 σ²/τ,
+/// as of rates of variance σ² with a correlation time τ.
+double LiveTiltFilter::unseen_drive() const {
+  constexpr double correlation_s = 1.0;
+  return std::sqrt(square(motion_.drive) + 2.0 * rate2_ / correlation_s);
+}
+
+/// The mean square of the rate of rotation over some 20 s, less what is uncertain of it.
+void LiveTiltFilter::learn_rate() {
+  constexpr double memory_s = 20.0;
+  const double square_now =
+      state_.x.mean.tail<3>().squaredNorm() - state_.x.cov.diagonal().tail<3>().sum();
+  const double share = 1.0 - std::exp(-now_.step_s[1] / memory_s);
+  rate2_ += (std::max(square_now, 0.0) / square(known_.gravity_mps2) - rate2_) * share;
+}
+
+bool LiveTiltFilter::is_unseen(const LiveEpoch& epoch) const {
+  constexpr double longest_seen_s = 0.1;
+  return !gyroscope_ && epochs_ > 0 &&
+         (!epoch.has(0) || epoch.time_s - measured_s_ > longest_seen_s);
+}
+
+/// Whether the base may have turned so far by this epoch that a linear update would miss the
+/// direction of gravity.
+bool LiveTiltFilter::has_lost_gravity(const LiveEpoch& epoch) const {
+  constexpr double most_rad = 0.3;
+  const double step_s = epoch.time_s - time_s_;
+  const Mat<9> variance = state_.x.cov.diagonal() / (2.0 * square(known_.gravity_mps2));
+  const double turned_rad2 = variance.head<3>().sum() + variance.tail<3>().sum() * square(step_s) +
+                             square(unseen_drive()) * step_s * step_s * step_s / 3.0;
+  return turned_rad2 > square(most_rad);
+}
+
+/// Begins anew with the next epoch.
+void LiveTiltFilter::restart() {
+  epochs_ = 0;
+  unknown_ = 1.0;
+  window_ = FixedLag<9, 3>(window_.lag());
+}
+
 void LiveTiltFilter::step(const LiveEpoch& epoch) {
+  const bool unseen = is_unseen(epoch);
+  if (epoch.has(0)) {
+    if (unseen && has_lost_gravity(epoch)) restart();
+    measured_s_ = epoch.time_s;
+  }
   read(epoch);
   follow_motion();
   if (epochs_ == 0) {
     now_.force_mps2[0] = now_.force_mps2[1];
     now_.accel_cov_m2ps4[0] = now_.accel_cov_m2ps4[1];
   }
-  const TiltModel model(now_, known_, motion_);
+  TiltMotion motion = motion_;
+  if (unseen) motion.drive = unseen_drive();
+  const TiltModel model(now_, known_, motion);
   if (epochs_ == 0) state_ = model.start();
   advance(model, epochs_ == 0 ? 0 : 1, tilt_gate, state_, step_);
   const double fade = std::exp(-now_.step_s[1] / predicted_s);
   predicted_ = fade * predicted_ + tilt_log_likelihood(step_, model.accel_readings(1));
+  if (epoch.has(0) && !gyroscope_) learn_rate();
   window_.push(step_);
   times_s_[epochs_ % times_s_.size()] = time_s_;
   ++epochs_;

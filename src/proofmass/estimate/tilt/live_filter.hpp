@@ -92,6 +92,11 @@ class LiveTiltFilter {
   [[nodiscard]] double predicted() const { return predicted_; }
 
  private:
+  [[nodiscard]] double unseen_drive() const;
+  void learn_rate();
+  [[nodiscard]] bool is_unseen(const LiveEpoch& epoch) const;
+  [[nodiscard]] bool has_lost_gravity(const LiveEpoch& epoch) const;
+  void restart();
   void read(const LiveEpoch& epoch);
   void follow_motion();
 
@@ -111,6 +116,8 @@ class LiveTiltFilter {
   FixedLag<9, 3> window_;
   std::vector<double> times_s_;
   double time_s_ = 0.0, nis_ = std::numeric_limits<double>::quiet_NaN();
+  double measured_s_ = 0.0;  ///< of the last measurement
+  double rate2_ = 0.0;       ///< mean square of the rate of rotation, rad²/s²; without gyroscope
   std::size_t epochs_ = 0;
   double predicted_ = 0.0;
 };
