@@ -1,7 +1,6 @@
 #include "proofmass/signal/unusable.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <iterator>
@@ -100,30 +99,55 @@ bool stand_out(View<double> series, const std::vector<Run>& runs, double low, do
   return 2 * at_ends < series.size() && 2 * in_long > in_runs;
 }
 
-// Whether the noise, which moves other values by steps, leaves the lowest or highest one of them
-// eight times as often as each of its neighbours, while another axis changes: the noise of a sensor
-// at rest near its limit is cut off there, in runs too short and too irregular for the other tests.
-bool piles_up(View<double> series,
-              double end,
-              double lsb,
-              const std::vector<View<double>>& others) {
-  constexpr std::size_t fewest = 50, neighbours = 8, times_as_often = 8;
-  constexpr double steps = 2.0;
-  std::array<std::size_t, neighbours + 1> often{};
-  std::vector<double> changes;
-  std::size_t alone = 0;
-  for (std::size_t k = 1; k < series.size(); ++k) {
-    const double off = std::abs(series[k] - end) / lsb;
-    if (off < static_cast<double>(neighbours) + 0.5) ++often[static_cast<std::size_t>(off + 0.5)];
-    const bool stays = series[k] == end && series[k - 1] == end;
-    if (!stays && std::isfinite(series[k] - series[k - 1]))
-      changes.push_back(std::abs(series[k] - series[k - 1]));
-    if (stays && std::ranges::any_of(others, [k](View<double> o) { return o[k] != o[k - 1]; }))
-      ++alone;
+struct Levels {
+  std::size_t at_end = 0,
+              most = 0;  // values at the end, and at the most frequent of its neighbours
+  double step = 0.0;     // usual distance of the neighbours
+};
+
+// The end of the range of values and the eight levels nearest to it.
+Levels levels_at(View<double> series, double end) {
+  constexpr std::size_t neighbours = 8;
+  std::vector<double> off;
+  for (const double value : series)
+    if (is_plausible(value)) off.push_back(std::abs(value - end));
+  std::ranges::sort(off);
+  Levels out;
+  std::vector<double> steps;
+  for (std::size_t from = 0, to = 0; from < off.size() && steps.size() < neighbours; from = to) {
+    while (to < off.size() && off[to] == off[from]) ++to;
+    if (from == 0) {
+      out.at_end = to;
+      continue;
+    }
+    out.most = std::max(out.most, to - from);
+    steps.push_back(off[from] - off[from - 1]);
   }
-  const std::size_t most = *std::max_element(often.begin() + 1, often.end());
-  return often[0] >= std::max(fewest, times_as_often * most) && 2 * alone > often[0] &&
-         median(std::move(changes)).value_or(0.0) >= steps * lsb;
+  if (!steps.empty()) out.step = std::ranges::min(steps);
+  return out;
+}
+
+// Whether noise of two quantisation steps or more leaves the lowest or highest value eight times as
+// often as each of the levels next to it, while another axis changes: the noise of a sensor at rest
+// near its limit is cut off there, in runs too short and too irregular for the other tests.
+bool piles_up(View<double> series, double end, const std::vector<View<double>>& others) {
+  constexpr std::size_t fewest = 50, times_as_often = 8;
+  constexpr double steps = 2.0;
+  std::vector<double> changes;
+  std::size_t stays = 0, alone = 0;
+  for (std::size_t k = 1; k < series.size(); ++k) {
+    const double change = std::abs(series[k] - series[k - 1]);
+    if (series[k] != end || change != 0.0) {
+      if (std::isfinite(change)) changes.push_back(change);
+      continue;
+    }
+    ++stays;
+    if (std::ranges::any_of(others, [k](View<double> o) { return o[k] != o[k - 1]; })) ++alone;
+  }
+  if (stays < fewest || 2 * alone < stays) return false;
+  const Levels levels = levels_at(series, end);
+  return levels.at_end >= times_as_often * levels.most &&
+         median(std::move(changes)).value_or(0.0) >= steps * levels.step && levels.step > 0.0;
 }
 
 ChannelAudit rails_of(const Channel& axis) {
@@ -177,7 +201,7 @@ RangeEnds range_ends(const Channel& axis, const std::vector<View<double>>& other
   std::vector<Witness> witnesses;
   for (const auto& [value, end] : {std::pair{low, &ends.low}, {high, &ends.high}}) {
     if (*end) continue;
-    if (lsb > 0.0 && piles_up(series, value, lsb, others)) {
+    if (lsb > 0.0 && piles_up(series, value, others)) {
       *end = value;
       continue;
     }
