@@ -154,7 +154,7 @@ void doubt_far_points(const std::vector<NormalPoint>& points, std::vector<Epoch>
   const double most_m = std::max(least_m, far * median(std::move(off_m)).value_or(0.0));
   for (const NormalPoint& point : points) {
     if (!(point.off_m > most_m)) continue;
-    epochs[point.epoch].fix_variance_m2 += square(point.off_m);
+    epochs[point.epoch].fix_variance_m2 += square(point.off_m) - square(most_m);
     epochs[point.epoch].fix_doubted = true;
   }
 }

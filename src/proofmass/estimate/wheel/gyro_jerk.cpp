@@ -36,10 +36,10 @@ void GyroJerk::put(double speed_radps) {
   const double before = std::exchange(second_, second);
   if (std::isnan(second)) return;
   // A single outlier is no jerk: it changes the speed at one measurement only.
-  double least2 = second * second;
-  if (apart_ > 1 && !std::isnan(before))
-    least2 = before * second > 0.0 ? std::min(least2, before * before) : 0.0;
-  psd_ = std::max(psd_, per_square_ * std::max(least2 - noise2_, 0.0));
+  constexpr double least_share = 0.3;
+  const bool is_alone = before * second <= least_share * second * second;
+  if (apart_ > 1 && is_alone) return;
+  psd_ = std::max(psd_, per_square_ * std::max(second * second - noise2_, 0.0));
 }
 
 double GyroJerk::add(double time_s, double speed_radps) {

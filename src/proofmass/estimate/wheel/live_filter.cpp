@@ -412,7 +412,8 @@ std::pair<Uncertain, Uncertain> LiveWheelFilter<S>::motion_of(const Gaussian<3>&
   // The hub's acceleration tilts the apparent gravity, and changes within about a second.
   constexpr double changes_per_s = 1.0;
   const double lean_s2 = rolling_std_m_ / now_.gravity_mps2;
-  const double angle_more = by_places(0) + alignment_variance_rad2_ + square(lean_s2 * now.accel);
+  const double accel2 = square(now.accel) + x.cov(wheel::accel, wheel::accel);
+  const double angle_more = by_places(0) + alignment_variance_rad2_ + square(lean_s2) * accel2;
   const double speed_more = by_places(1) + square(lean_s2 * changes_per_s) * accel2_;
   return {uncertain(now.angle, now.by_angle, now.speed, angle_more),
           uncertain(now.speed, now.by_speed, now.accel, speed_more)};
