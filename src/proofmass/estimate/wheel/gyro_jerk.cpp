@@ -15,8 +15,9 @@ constexpr double most_std = 5.0;
 
 }  // namespace
 
-GyroJerk::GyroJerk(double rate_hz, double noise_variance)
+GyroJerk::GyroJerk(double rate_hz, double noise_variance, bool confirmed)
     : rate_hz_(rate_hz),
+      confirmed_(confirmed),
       apart_(static_cast<std::size_t>(std::max(1.0, std::round(apart_s * rate_hz)))),
       noise2_(6.0 * square(most_std) * noise_variance),
       last_(2 * apart_ + 1, no_value) {
@@ -35,11 +36,10 @@ void GyroJerk::put(double speed_radps) {
   const double second = speed_radps - 2.0 * middle + first;
   const double before = std::exchange(second_, second);
   if (std::isnan(second)) return;
-  // A single outlier is no jerk: it changes the speed at one measurement only.
-  constexpr double least_share = 0.3;
-  const bool is_alone = before * second <= least_share * second * second;
-  if (apart_ > 1 && is_alone) return;
-  psd_ = std::max(psd_, per_square_ * std::max(second * second - noise2_, 0.0));
+  double least2 = second * second;
+  if (confirmed_ && apart_ > 1 && !std::isnan(before))
+    least2 = before * second > 0.0 ? std::min(least2, before * before) : 0.0;
+  psd_ = std::max(psd_, per_square_ * std::max(least2 - noise2_, 0.0));
 }
 
 double GyroJerk::add(double time_s, double speed_radps) {

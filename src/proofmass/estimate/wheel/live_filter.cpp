@@ -79,7 +79,7 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelOptions& options,
   now_.delay_s = start.delay_s;
   now_.epochs.assign(2, {0.0, {0, S == 2 ? 0 : WheelEpoch::no_row}});
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
-    jerks_.emplace_back(start.rate_hz, start.speed_scatter2[s]);
+    jerks_.emplace_back(start.rate_hz, start.speed_scatter2[s], true);
     now_.sensors.push_back({{0.0}, {0.0}, {variance_m2ps4_[s]}});
     if (!(start.speed_variance[s] > 0.0)) continue;
     gyroscope_at_[s] = gyroscope_at(options, s);
@@ -92,6 +92,7 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelOptions& options,
   }
   model_ = wheel_model<S>(now_, start.noise);
   model_.places_held = true;
+  if (model_.with_gyro) model_.mean_accel = hub_accel_;
   model_.with_ripple = start.with_ripple;
   model_.orders = start.orders;
   scale_motion(model_, 1.0);
@@ -129,8 +130,8 @@ void LiveWheelFilter<S>::narrow_constants(const Eigen::MatrixXd& found_cov) {
 
 /// A gentle swing of the speed tilts the apparent gravity as another scale of the gyroscope turns
 /// the wheel, and the noise of the acceleration, as the coefficient of the radius, makes it seem
-/// known: a filter that estimates it ends where neither its intervals nor its prior allow. It keeps
-/// what the search has found.
+/// known: a filter that estimates it then ends where neither its intervals nor its prior allow. Its
+/// uncertainty is added to the results instead.
 template <int S>
 void LiveWheelFilter<S>::hold_rolling_radius() {
   constexpr int rolling = wheel::rolling(S);
@@ -139,11 +140,32 @@ void LiveWheelFilter<S>::hold_rolling_radius() {
   main_.x.cov.col(rolling).setZero();
 }
 
+/// Pushes show it.
+template <int S>
+void LiveWheelFilter<S>::release_rolling_radius() {
+  constexpr double pushed_radps2 = 1.5;  // root mean square
+  if (rolling_std_m_ == 0.0 || accel2_ < square(pushed_radps2)) return;
+  constexpr int rolling = wheel::rolling(S);
+  const double variance = square(std::exchange(rolling_std_m_, 0.0));
+  main_.x.cov(rolling, rolling) = variance;
+  for (Moved& moved : moved_) moved.state.x.cov(rolling, rolling) = variance;
+  for (Rival& rival : rivals_) rival.state.x.cov(rolling, rolling) = variance;
+}
+
 template <int S>
 void LiveWheelFilter<S>::seat(int place) {
   Moved& moved = moved_[static_cast<std::size_t>(place)];
   moved.state = main_;
   moved.state.x.mean(first_place + place) += place_step_m;
+}
+
+/// The acceleration before this epoch, the coefficient of the rolling radius; 0 where it may be
+/// noise.
+template <int S>
+double LiveWheelFilter<S>::significant_accel() const {
+  constexpr double most_std = 3.0;
+  const double accel = main_.x.mean(wheel::accel);
+  return square(accel) > square(most_std) * main_.x.cov(wheel::accel, wheel::accel) ? accel : 0.0;
 }
 
 /// Where nothing is measured, the acceleration may change as it does otherwise: without this the
@@ -164,15 +186,15 @@ bool LiveWheelFilter<S>::is_unseen(const LiveEpoch& epoch) const {
   return true;
 }
 
-/// The mean square of the acceleration over some 20 s, less what is uncertain of it.
+/// The mean square of the acceleration over 4 s at first, 20 s later, less what is uncertain of it.
 template <int S>
 void LiveWheelFilter<S>::learn_accel() {
-  constexpr double memory_s = 20.0;
+  constexpr double least_memory_s = 4.0, memory_s = 20.0;
   const double square_now =
       std::max(square(main_.x.mean(wheel::accel)) - main_.x.cov(wheel::accel, wheel::accel), 0.0);
   const double share =
-      std::min(now_.epochs[1].dt_s / std::min(time_s_ - first_time_s_, memory_s), 1.0);
-  if (time_s_ > first_time_s_) accel2_ += (square_now - accel2_) * share;
+      now_.epochs[1].dt_s / std::clamp(time_s_ - first_time_s_, least_memory_s, memory_s);
+  accel2_ += (square_now - accel2_) * std::min(share, 1.0);
 }
 
 template <int S>
@@ -193,6 +215,7 @@ void LiveWheelFilter<S>::read(const LiveEpoch& epoch) {
     const double speed = along(rate, axis);
     sensor.speed_radps[0] = speed;
     jerk_psd = std::max(jerk_psd, jerks_[s].add(epoch.time_s, speed));
+    (*hub_accel_)[1] = significant_accel();
     sensor.rate_u_radps[0] = along(rate, u) - sensor.leak_u.at(speed);
     sensor.rate_v_radps[0] = along(rate, v) - sensor.leak_v.at(speed);
   }
@@ -252,6 +275,7 @@ void LiveWheelFilter<S>::step(const LiveEpoch& epoch) {
   advance_all();
   judge();
   if (step_.count > 0) learn_accel();
+  release_rolling_radius();
   if (time_s_ - stretch_start_s_ >= stretch_s) end_stretch();
 }
 
@@ -412,8 +436,7 @@ std::pair<Uncertain, Uncertain> LiveWheelFilter<S>::motion_of(const Gaussian<3>&
   // The hub's acceleration tilts the apparent gravity, and changes within about a second.
   constexpr double changes_per_s = 1.0;
   const double lean_s2 = rolling_std_m_ / now_.gravity_mps2;
-  const double accel2 = square(now.accel) + x.cov(wheel::accel, wheel::accel);
-  const double angle_more = by_places(0) + alignment_variance_rad2_ + square(lean_s2) * accel2;
+  const double angle_more = by_places(0) + alignment_variance_rad2_ + square(lean_s2 * now.accel);
   const double speed_more = by_places(1) + square(lean_s2 * changes_per_s) * accel2_;
   return {uncertain(now.angle, now.by_angle, now.speed, angle_more),
           uncertain(now.speed, now.by_speed, now.accel, speed_more)};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -100,6 +101,8 @@ class LiveWheelFilter {
 
   void narrow_constants(const Eigen::MatrixXd& found_cov);
   void hold_rolling_radius();
+  void release_rolling_radius();
+  [[nodiscard]] double significant_accel() const;
   void seat(int place);
   [[nodiscard]] bool is_unseen(const LiveEpoch& epoch) const;
   void learn_accel();
@@ -128,7 +131,10 @@ class LiveWheelFilter {
   std::array<double, 2> variance_m2ps4_;                      ///< of each sensor's measurements
   std::array<std::optional<std::size_t>, 2> gyroscope_at_{};  ///< among an epoch's vectors
   std::vector<GyroJerk> jerks_;                               ///< one for each sensor
-  double alignment_variance_rad2_ = 0.0, delay_std_s_ = 0.0, rolling_std_m_ = 0.0;
+  /// At epoch 1, significant_accel(): see WheelModel::mean_accel.
+  std::shared_ptr<std::vector<double>> hub_accel_ = std::make_shared<std::vector<double>>(2, 0.0);
+  double rolling_std_m_ = 0.0;  ///< while it is held
+  double alignment_variance_rad2_ = 0.0, delay_std_s_ = 0.0;
 
   FilterState<states> main_;
   StepOf<Model> step_, other_step_;
