@@ -145,8 +145,9 @@ struct NormalPoint {
   double off_m;  // from the path
 };
 
-// A point far from the path gets its distance as standard deviation, as after reflections that last
-// for seconds. The filter alone would accept it where it comes first, and then reject the others.
+// A point far from the path, as after reflections that last for seconds, gets a variance that grows
+// with the square of its distance. The filter alone would accept it where it comes first, and then
+// reject the others.
 void doubt_far_points(const std::vector<NormalPoint>& points, std::vector<Epoch>& epochs) {
   constexpr double far = 5.0, least_m = 3.0;
   std::vector<double> off_m;
