@@ -302,7 +302,7 @@ TEST(LiveWheel, TheTurnsAcrossAGapAreAsUncertainAsTheSpeedChanges) {
   EXPECT_LT(largest(follow(stream, options_for(1)), drive, "angle"), 4.0);
 }
 
-/// Of a wheel on a bench.
+/// A recording of a wheel on a bench.
 Stream with_gyroscope(const Drive& drive, double rate_hz, double noise_mps2) {
   Mount mount;
   mount.place_m = 0.1;

@@ -79,11 +79,11 @@ class FixComparison {
     return wrong;
   }
 
-  /// Uses these fixes instead.
-  void use(std::vector<PositionFix> fixes) {
+  /// Uses these fixes instead. Returns whether they have a solution.
+  bool use(std::vector<PositionFix> fixes) {
     TrackOptions options = options_;
     options.fixes = std::move(fixes);
-    take(std::move(options));
+    return take(std::move(options));
   }
 
  private:
@@ -165,12 +165,13 @@ class FixComparison {
     return moved;
   }
 
-  void take(TrackOptions options) {
+  bool take(TrackOptions options) {
     auto solved = solve(signal_, options);
-    if (!solved) return;
+    if (!solved) return false;
     options_ = std::move(options);
     solved_ = std::move(solved).value();
     log_density_ = log_density_of_fixes(solved_);
+    return true;
   }
 
   [[nodiscard]] double log_density(const TrackSignal& signal, TrackOptions options) const {
@@ -255,7 +256,7 @@ FixReview review_fixes(TrackSignal& signal,
       return wrong.time_s == fix.time_s - delay_s;
     });
   });
-  if (review.delay_s) fixes.use(std::move(given));
+  if (review.delay_s && !fixes.use(std::move(given))) return review;
   review.delay_s = fixes.remove_delay();
   for (PositionFix& wrong : review.wrong) wrong.time_s += delay_s;
   if (rests_in_doubt) review.false_rests += fixes.drop_rests();

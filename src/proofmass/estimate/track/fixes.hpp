@@ -13,9 +13,8 @@ namespace proofmass::estimate {
 ///
 /// - rests without which it is clearly higher are none, and are removed from `signal`;
 /// - a delay of all fixes, for which it is clearly higher, is subtracted from their times;
-/// - a fix far from the smoothed position without it is wrong, and is removed, as are repetitions
-/// of
-///   one position.
+/// - a fix far from the smoothed position without it is wrong, and is removed, as are the
+///   repetitions of one position.
 ///
 /// `options.fixes` and `solved` are adapted. Nothing is done with fewer than three fixes.
 [[nodiscard]] FixReview review_fixes(TrackSignal& signal,

@@ -15,9 +15,9 @@ constexpr double most_std = 5.0;
 
 }  // namespace
 
-GyroJerk::GyroJerk(double rate_hz, double noise_variance, bool confirmed)
+GyroJerk::GyroJerk(double rate_hz, double noise_variance, Evidence evidence)
     : rate_hz_(rate_hz),
-      confirmed_(confirmed),
+      evidence_(evidence),
       apart_(static_cast<std::size_t>(std::max(1.0, std::round(apart_s * rate_hz)))),
       noise2_(6.0 * square(most_std) * noise_variance),
       last_(2 * apart_ + 1, no_value) {
@@ -37,7 +37,7 @@ void GyroJerk::put(double speed_radps) {
   const double before = std::exchange(second_, second);
   if (std::isnan(second)) return;
   double least2 = second * second;
-  if (confirmed_ && apart_ > 1 && !std::isnan(before))
+  if (evidence_ == Evidence::two && apart_ > 1 && !std::isnan(before))
     least2 = before * second > 0.0 ? std::min(least2, before * before) : 0.0;
   psd_ = std::max(psd_, per_square_ * std::max(least2 - noise2_, 0.0));
 }

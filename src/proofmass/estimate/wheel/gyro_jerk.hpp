@@ -16,9 +16,12 @@ namespace proofmass::estimate {
 /// longer: white jerk of density q gives it the variance 2 q h³ / 3, white noise 6 σ².
 class GyroJerk {
  public:
-  /// `rate_hz` of the measurements, > 0. `confirmed`: a jerk counts as far as two measurements in a
-  /// row show it, so that a single outlier is none, and the density is somewhat smaller.
-  GyroJerk(double rate_hz, double noise_variance, bool confirmed = false);
+  /// Consecutive measurements that have to show a jerk. With two, a single outlier is ignored, and
+  /// the density is somewhat smaller.
+  enum class Evidence { one, two };
+
+  /// `rate_hz` of the measurements, > 0.
+  GyroJerk(double rate_hz, double noise_variance, Evidence evidence = Evidence::one);
 
   /// The density up to this measurement; decays within 40 ms after the last irregularity. NaN, and
   /// the rows that the time shows to be lost, are missing in the differences: a change of speed
@@ -30,7 +33,7 @@ class GyroJerk {
   void put(double speed_radps);
 
   double rate_hz_;
-  bool confirmed_;
+  Evidence evidence_;
   std::size_t apart_;         ///< measurements in h
   double per_square_;         ///< from Δ² to the density
   double noise2_;             ///< Δ² that noise explains

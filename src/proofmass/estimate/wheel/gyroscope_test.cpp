@@ -152,8 +152,8 @@ TEST(GyroJerk, DecaysAfterAnIrregularityAndSeesNoStepAcrossAGap) {
   EXPECT_GT(seen, 0.5 * most);
 }
 
-TEST(GyroJerk, IsNoSingleOutlierWhereItHasToBeConfirmed) {
-  GyroJerk jerk(100.0, 1e-4, true);
+TEST(GyroJerk, IgnoresASingleOutlierIfItNeedsTwoMeasurements) {
+  GyroJerk jerk(100.0, 1e-4, GyroJerk::Evidence::two);
   for (int k = 0; k < 100; ++k)
     EXPECT_LT(jerk.add(0.01 * k, k == 50 ? 30.0 : 2.0 + 0.01 * k), 1e-9) << k;
 }

@@ -79,7 +79,7 @@ LiveWheelFilter<S>::LiveWheelFilter(const LiveWheelOptions& options,
   now_.delay_s = start.delay_s;
   now_.epochs.assign(2, {0.0, {0, S == 2 ? 0 : WheelEpoch::no_row}});
   for (std::size_t s = 0; s < static_cast<std::size_t>(S); ++s) {
-    jerks_.emplace_back(start.rate_hz, start.speed_scatter2[s], true);
+    jerks_.emplace_back(start.rate_hz, start.speed_scatter2[s], GyroJerk::Evidence::two);
     now_.sensors.push_back({{0.0}, {0.0}, {variance_m2ps4_[s]}});
     if (!(start.speed_variance[s] > 0.0)) continue;
     gyroscope_at_[s] = gyroscope_at(options, s);
@@ -140,7 +140,7 @@ void LiveWheelFilter<S>::hold_rolling_radius() {
   main_.x.cov.col(rolling).setZero();
 }
 
-/// Pushes show it.
+/// Estimates the radius from now on, once pushes determine it.
 template <int S>
 void LiveWheelFilter<S>::release_rolling_radius() {
   constexpr double pushed_radps2 = 1.5;  // root mean square
