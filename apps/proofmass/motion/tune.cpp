@@ -97,10 +97,6 @@ bool may_rest(const RestRecording& recording) {
   });
 }
 
-bool is_rest(TuneModel model) {
-  return model == TuneModel::rest || model == TuneModel::rest_markov;
-}
-
 TuneChoice choose(const TuneCommand& command, const RestRecording& recording) {
   constexpr std::size_t most_axes = 3;
   estimate::TuneChoiceOptions options{.measures_acceleration = may_rest(recording)};
@@ -196,7 +192,7 @@ std::vector<TuneOptions> options_of(const TuneCommand& command,
   for (const std::string& text : command.fix) options.fixed.push_back(parse_fixed(text));
   std::vector<TuneOptions> all(channels.size(), options);
   if (!command.from_sensor) return all;
-  if (command.input.sensors.empty() || !is_rest(model)) {
+  if (command.input.sensors.empty() || !estimate::is_of_rest(model)) {
     throw Failure(usage, "--start-at-sensor: expected --sensor FILE.toml and a model of rest");
   }
   std::vector<Note> unused;
@@ -250,6 +246,7 @@ void fill(const TuneCommand& command,
     report.channels.push_back(
         {channel->title, channel->unit, std::max<std::size_t>(choice.rests.size(), 1)});
   }
+  for (Note& note : report::outlier_notes(report)) report.notes.push_back(std::move(note));
   report.consistency = estimate::consistency_of(report.tuning);
   for (std::size_t k = 0; k < channels.size(); ++k) {
     if (auto study = estimate::tune_study(report.tuning, k, command.study_step_s))

@@ -10,6 +10,7 @@
 #include "proofmass/core/contract.hpp"
 #include "proofmass/core/linalg.hpp"
 #include "proofmass/estimate/tune/interval.hpp"
+#include "proofmass/estimate/tune/outliers.hpp"
 #include "proofmass/estimate/tune/problem.hpp"
 #include "proofmass/estimate/tune/start.hpp"
 
@@ -86,14 +87,12 @@ bool holds(const std::vector<FixedParameter>& list, std::string_view name) {
   return std::ranges::any_of(list, [&](const FixedParameter& one) { return one.name == name; });
 }
 
-TuneProblem problem_of(const std::vector<TuneSeries>& series,
-                       const Group& group,
-                       const TuneOptions& options) {
+TuneProblem problem_of(const std::vector<TuneSeries>& series, const TuneOptions& options) {
   std::vector<const TuneSeries*> own;
-  for (const std::size_t s : group) own.push_back(&series[s]);
+  for (const TuneSeries& one : series) own.push_back(&one);
   TuneProblem problem(options.model, std::move(own));
   const View<TuneParameter> parameters = parameters_of(options.model);
-  Group all(group.size());
+  Group all(series.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const std::string_view name = parameters[j].name;
@@ -134,7 +133,8 @@ class Fit {
     }
   }
 
-  Status run(const TuneOptions& options, Tuning& into) {
+  // The maximum with all noises.
+  Status begin(const TuneOptions& options, Tuning& into) {
     const Status started = set_start(problem_);
     if (!started) return started;
     for (std::size_t k = 0; k < problem_.unknowns.size(); ++k) {
@@ -148,6 +148,11 @@ class Fit {
     each(
         [&](Candidate& candidate, std::size_t k) { candidate.found.after_em = problem_.value(k); });
     climb(into);
+    return Done{};
+  }
+
+  // Which noises are distinguishable from zero, and their intervals.
+  void finish(Tuning& into) {
     while (drop_one()) climb(into);
     set_intervals();
     into.log_likelihood += problem_.log_likelihood();
@@ -156,7 +161,6 @@ class Fit {
         into.gradient = std::max(into.gradient, std::abs(g));
       }
     }
-    return Done{};
   }
 
   [[nodiscard]] const TuneProblem& problem() const { return problem_; }
@@ -346,6 +350,52 @@ void add_results(const Fit& fit, const Group& group, std::size_t all, Tuning& in
   }
 }
 
+void set_outliers(TunedSeries& series, const TuneOutliers& outliers) {
+  series.outliers = outliers;
+  series.missing -= outliers.count;
+}
+
+// What the fits of several channels have in common.
+void add_course(Tuning& all, const Tuning& more) {
+  all.converged = all.converged && more.converged;
+  all.log_likelihood += more.log_likelihood;
+  all.iterations += more.iterations;
+  all.gradient = std::max(all.gradient, more.gradient);
+  all.em_log_likelihood.resize(
+      std::max(all.em_log_likelihood.size(), more.em_log_likelihood.size()));
+  for (std::size_t k = 0; k < more.em_log_likelihood.size(); ++k)
+    all.em_log_likelihood[k] += more.em_log_likelihood[k];
+}
+
+// In motion, a jolt is as isolated as an outlier, and against a noise that is held anything is.
+bool has_outliers(const TuneOptions& options) {
+  return is_of_rest(options.model) &&
+         std::ranges::none_of(options.fixed, [&](const FixedParameter& fixed) {
+           return find_parameter(options.model, fixed.name)->role != TuneRole::time_constant;
+         });
+}
+
+// The maximum for the measurements without outliers. Many are the tails of the noise, or noise of
+// channels that share a parameter and differ: they stay.
+Result<Fit> fit_without_outliers(const std::vector<TuneSeries>& series,
+                                 const TuneOptions& options,
+                                 TuneReadings& readings,
+                                 Tuning& course) {
+  constexpr int most_rounds = 10;
+  constexpr double most_share = 0.02;
+  for (int round = has_outliers(options) ? 0 : most_rounds;; ++round) {
+    Fit fit(problem_of(readings.series(), options), options);
+    course = {};
+    course.converged = true;
+    if (Status found = fit.begin(options, course); !found) return found.error();
+    if (round == most_rounds) return fit;
+    if (readings.drop_outliers(fit.problem()) == 0) return fit;
+    if (readings.largest_share() < most_share) continue;
+    readings = TuneReadings(series);
+    round = most_rounds - 1;
+  }
+}
+
 void add_fixed(const TuneOptions& options, Tuning& into) {
   for (const FixedParameter& fixed : options.fixed) {
     const TuneParameter& parameter = *find_parameter(options.model, fixed.name);
@@ -383,10 +433,18 @@ Result<Tuning> tune(const std::vector<TuneSeries>& series, const TuneOptions& op
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (options.progress)
       options.progress("tuning", static_cast<double>(g) / static_cast<double>(groups.size()));
-    Fit fit(problem_of(series, groups[g], options), options);
-    const Status done = fit.run(options, tuning);
-    if (!done) return done.error().at(series[groups[g].front()].name);
+    std::vector<TuneSeries> own;
+    for (const std::size_t s : groups[g]) own.push_back(series[s]);
+    TuneReadings readings(own);
+    Tuning course;
+    Result<Fit> found = fit_without_outliers(own, options, readings, course);
+    if (!found) return found.error().at(own.front().name);
+    Fit fit = std::move(found).value();
+    fit.finish(course);
+    add_course(tuning, course);
     add_results(fit, groups[g], series.size(), tuning);
+    for (std::size_t k = 0; k < groups[g].size(); ++k)
+      set_outliers(tuning.series[groups[g][k]], readings.outliers()[k]);
   }
   add_fixed(options, tuning);
   return tuning;
@@ -407,7 +465,8 @@ void append(Tuning& all, Tuning more) {
   PM_EXPECTS(all.series.empty() || all.model == more.model);
   const std::size_t before = all.series.size();
   all.model = more.model;
-  all.converged = (before == 0 || all.converged) && more.converged;
+  if (before == 0) all.converged = true;
+  add_course(all, more);
   for (TunedParameter& parameter : more.parameters) {
     const auto same = [&](const TunedParameter& one) {
       return one.verdict == TuneVerdict::fixed && one.name == parameter.name;
@@ -418,13 +477,6 @@ void append(Tuning& all, Tuning more) {
     all.parameters.push_back(std::move(parameter));
   }
   for (TunedSeries& series : more.series) all.series.push_back(std::move(series));
-  all.log_likelihood += more.log_likelihood;
-  all.iterations += more.iterations;
-  all.gradient = std::max(all.gradient, more.gradient);
-  all.em_log_likelihood.resize(
-      std::max(all.em_log_likelihood.size(), more.em_log_likelihood.size()));
-  for (std::size_t k = 0; k < more.em_log_likelihood.size(); ++k)
-    all.em_log_likelihood[k] += more.em_log_likelihood[k];
 }
 
 }  // namespace proofmass::estimate

@@ -61,15 +61,22 @@ struct TunedParameter {
   double start = 0.0, after_em = 0.0;  ///< initial and intermediate values
 };
 
+/// Isolated measurements that no noise of the model explains.
+struct TuneOutliers {
+  std::size_t count = 0;
+  double largest = 0.0;  ///< distance from what the others predict, in the channel's unit
+};
+
 /// Result of one channel.
 struct TunedSeries {
   std::string name;
   std::vector<double> values;  ///< the model's parameters as used; one that is not observable is 0
   TuneSystem system;           ///< with these values
   double log_likelihood = 0.0;
-  std::size_t readings = 0, missing = 0;
+  std::size_t readings = 0, missing = 0;  ///< without the outliers
+  TuneOutliers outliers;
   double rate_hz = 0.0, duration_s = 0.0;
-  /// All segments; NaN where missing, and at the start of each.
+  /// All segments; NaN where missing, of outliers, and at the start of each.
   std::vector<double> time_s, innovation, variance;
 };
 
@@ -94,7 +101,8 @@ struct Tuning {
 ///
 /// A noise whose omission costs less than 3.84 in twice the log-likelihood is not distinguishable
 /// from zero: it has no value but an upper 95 % limit (2.71), and the others are fitted without it.
-/// Channels are fitted separately unless they share a parameter.
+/// Channels are fitted separately unless they share a parameter. Outliers of a sensor at rest
+/// (tune/outliers.hpp) are found with the parameters of a fit, which is then repeated without them.
 ///
 /// Source: J. Durbin, S. J. Koopman (2012), chapter 7; EM: R. H. Shumway, D. S. Stoffer, J. Time
 /// Series Anal. 3 (1982) 253. Errors: invalid_argument (a name that the model does not have, an

@@ -1,18 +1,26 @@
 #include "proofmass/estimate/tune_choice.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace proofmass::estimate {
 namespace {
 
-bool is_rest(TuneModel model) {
-  return model == TuneModel::rest || model == TuneModel::rest_markov;
-}
-
-double share_of(const std::vector<signal::Rest>& rests, std::size_t samples) {
-  std::size_t inside = 0;
-  for (const signal::Rest& rest : rests) inside += rest.last - rest.first + 1;
-  return samples == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(samples);
+// A sample counts where every axis is measured, so that a gap is neither rest nor motion.
+double share_of(const std::vector<signal::Rest>& rests, View<View<double>> axes) {
+  const auto measured = [&](std::size_t from, std::size_t end) {
+    std::size_t count = 0;
+    for (std::size_t k = from; k < end; ++k) {
+      if (std::ranges::all_of(axes, [k](View<double> axis) { return std::isfinite(axis[k]); }))
+        ++count;
+    }
+    return static_cast<double>(count);
+  };
+  const double all = axes.empty() ? 0.0 : measured(0, axes.front().size());
+  double inside = 0.0;
+  for (const signal::Rest& rest : rests) inside += measured(rest.first, rest.last + 1);
+  return all == 0.0 ? 0.0 : inside / all;
 }
 
 }  // namespace
@@ -23,13 +31,13 @@ TuneChoice choose_tune_model(View<View<double>> axes, const TuneChoiceOptions& o
   TuneChoice choice;
   if (given) {
     choice.model = *given;
-    if (!is_rest(*given)) return choice;
+    if (!is_of_rest(*given)) return choice;
   } else if (!options.measures_acceleration) {
     return {TuneModel::local_level, TuneBasis::no_acceleration, {}, {}};
   }
   std::vector<signal::Rest> rests;
   if (!axes.empty()) rests = signal::find_rests(axes, {.rate_hz = options.rate_hz}).rests;
-  const double share = axes.empty() ? 0.0 : share_of(rests, axes.front().size());
+  const double share = share_of(rests, axes);
   choice.rest_share = share;
   if (!given && share < nearly_all) {
     choice.model = TuneModel::pva;
@@ -37,7 +45,7 @@ TuneChoice choose_tune_model(View<View<double>> axes, const TuneChoiceOptions& o
     return choice;
   }
   if (!given) choice.basis = TuneBasis::at_rest;
-  if (share < 1.0) choice.rests = std::move(rests);
+  if (share < 1.0 || rests.size() > 1) choice.rests = std::move(rests);
   return choice;
 }
 

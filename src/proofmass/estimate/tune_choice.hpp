@@ -22,8 +22,9 @@ enum class TuneBasis {
 struct TuneChoice {
   TuneModel model = TuneModel::rest;
   TuneBasis basis = TuneBasis::given;
-  std::optional<double> rest_share;  ///< of the samples; absent where rests were not looked for
-  std::vector<signal::Rest> rests;   ///< to tune on; empty: the whole recording
+  std::optional<double>
+      rest_share;                   ///< of the measured samples; absent where rests were not sought
+  std::vector<signal::Rest> rests;  ///< to tune on; empty: the whole recording
 };
 
 struct TuneChoiceOptions {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 
 #include "proofmass/core/random.hpp"
 
@@ -49,6 +50,14 @@ TEST(ChooseTuneModel, IsAModelOfMotionWhereMuchOfItMoves) {
   EXPECT_EQ(choice.basis, TuneBasis::in_motion);
   EXPECT_NEAR(choice.rest_share.value(), 0.6, 0.02);
   EXPECT_TRUE(choice.rests.empty());
+}
+
+TEST(ChooseTuneModel, CountsAGapNeitherAsRestNorAsMotion) {
+  std::vector<double> values = moving_at_the_end(6000, 0.0);
+  values.insert(values.begin() + 3000, 9000, std::numeric_limits<double>::quiet_NaN());
+  const TuneChoice choice = choice_of(values, {});
+  EXPECT_EQ(choice.model, TuneModel::rest);
+  EXPECT_GT(choice.rest_share.value(), 0.99);
 }
 
 TEST(ChooseTuneModel, TunesAGivenModelOfRestOnTheStaticIntervals) {

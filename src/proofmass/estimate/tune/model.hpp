@@ -30,6 +30,11 @@ inline constexpr TuneModel all_tune_models[] = {
 [[nodiscard]] std::string_view name_of(TuneModel model);
 [[nodiscard]] std::optional<TuneModel> parse_tune_model(std::string_view name);
 
+/// Whether the model is one of a sensor at rest, without motion.
+[[nodiscard]] constexpr bool is_of_rest(TuneModel model) {
+  return model == TuneModel::rest || model == TuneModel::rest_markov;
+}
+
 /// Role of a parameter in the model.
 enum class TuneRole {
   reading,        ///< R

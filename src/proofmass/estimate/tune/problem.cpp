@@ -9,17 +9,6 @@
 namespace proofmass::estimate {
 namespace {
 
-std::size_t count_readings(const std::vector<const TuneSeries*>& series) {
-  std::size_t count = 0;
-  for (const TuneSeries* one : series) {
-    for (const View<double> segment : one->segments) {
-      count += static_cast<std::size_t>(
-          std::ranges::count_if(segment, [](double x) { return std::isfinite(x); }));
-    }
-  }
-  return count;
-}
-
 // One Newton step if the surface is concave and the step goes uphill.
 bool newton_step(TuneProblem& problem) {
   const TuneProblem::Slope at = problem.slope();
@@ -46,8 +35,18 @@ bool newton_step(TuneProblem& problem) {
 TuneProblem::TuneProblem(TuneModel model, std::vector<const TuneSeries*> series)
     : values(series.size(), std::vector<double>(parameters_of(model).size(), 1.0)),
       model_(model),
-      series_(std::move(series)),
-      readings_(count_readings(series_)) {}
+      series_(std::move(series)) {
+  for (const TuneSeries* one : series_) readings_ += count_readings(*one);
+}
+
+std::size_t count_readings(const TuneSeries& series) {
+  std::size_t count = 0;
+  for (const View<double> segment : series.segments) {
+    count += static_cast<std::size_t>(
+        std::ranges::count_if(segment, [](double x) { return std::isfinite(x); }));
+  }
+  return count;
+}
 
 std::vector<double> TuneProblem::logs() const {
   std::vector<double> logs;

@@ -17,6 +17,9 @@ struct TuneUnknown {
   std::vector<std::size_t> series;
 };
 
+/// Finite values of a channel.
+[[nodiscard]] std::size_t count_readings(const TuneSeries& series);
+
 class TuneProblem {
  public:
   TuneProblem(TuneModel model, std::vector<const TuneSeries*> series);

@@ -85,15 +85,19 @@ class Pass {
     return true;
   }
 
-  // Adjoint: λ, Λ of the state after step k become those before its measurement. Returns u² − D.
-  double look_back(const Trace<N>& trace, Vec<N>& r, Square<N>& L) const {
+  struct Error {
+    double u, D;
+  };
+
+  // Adjoint: λ, Λ of the state after step k become those before its measurement.
+  Error look_back(const Trace<N>& trace, Vec<N>& r, Square<N>& L) const {
     const Vec<N> LK = L * trace.gain;
     const double u = trace.weighted - trace.gain.dot(r);
     const double D = trace.weight + trace.gain.dot(LK);
     r += h_ * u;
     // (I − K h)ᵀ Λ (I − K h) + h hᵀ/S
     L = symmetric(L - h_ * LK.transpose() - LK * h_.transpose() + D * h_ * h_.transpose());
-    return u * u - D;
+    return {u, D};
   }
 
   [[nodiscard]] const Square<N>& F() const { return F_; }
@@ -215,7 +219,8 @@ TuneScore score_of(const TuneSystem& system, View<double> series) {
       r = Fr;
       L = Pass<N>::symmetric(pass.F().transpose() * L * pass.F());
     }
-    by_R += pass.look_back(kept.traces[k], r, L);
+    const auto [u, D] = pass.look_back(kept.traces[k], r, L);
+    by_R += u * u - D;
   }
   const Square<N> by_prior = r * r.transpose() - L;
   score.transitions = kept.traces.empty() ? 0 : kept.traces.size() - 1;
@@ -235,6 +240,29 @@ TuneInnovations innovations(const TuneSystem& system, View<double> series) {
   TuneInnovations out{std::vector<double>(series.size(), none),
                       std::vector<double>(series.size(), none)};
   forward<N>(system, series, KeepInnovations<N>{series, out});
+  return out;
+}
+
+template <int N>
+TuneResiduals residuals(const TuneSystem& system, View<double> series) {
+  TuneResiduals out{std::vector<double>(series.size(), none),
+                    std::vector<double>(series.size(), none)};
+  KeepTrace<N> kept;
+  kept.traces.reserve(series.size());
+  if (!std::isfinite(forward<N>(system, series, kept).log_likelihood)) return out;
+  const Pass<N> pass(system);
+  Vec<N> r = Vec<N>::Zero();
+  Square<N> L = Square<N>::Zero();
+  const std::size_t first = series.size() - kept.traces.size();
+  for (std::size_t k = kept.traces.size(); k-- > 0;) {
+    const auto [u, D] = pass.look_back(kept.traces[k], r, L);
+    if (!std::isnan(series[first + k]) && D > 0.0) {
+      out.residual[first + k] = u / D;
+      out.variance[first + k] = 1.0 / D;
+    }
+    r = (pass.F().transpose() * r).eval();
+    L = Pass<N>::symmetric(pass.F().transpose() * L * pass.F());
+  }
   return out;
 }
 
@@ -259,6 +287,10 @@ TuneScore likelihood_score(const TuneSystem& system, View<double> series) {
 
 TuneInnovations innovations_of(const TuneSystem& system, View<double> series) {
   return with_states(system, [&]<int N>() { return innovations<N>(system, series); });
+}
+
+TuneResiduals deletion_residuals(const TuneSystem& system, View<double> series) {
+  return with_states(system, [&]<int N>() { return residuals<N>(system, series); });
 }
 
 }  // namespace proofmass::estimate

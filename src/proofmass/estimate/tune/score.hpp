@@ -42,4 +42,13 @@ struct TuneInnovations {
 };
 [[nodiscard]] TuneInnovations innovations_of(const TuneSystem& system, View<double> series);
 
+/// Deletion residuals: the difference of each measurement from what all others of the series
+/// predict for it, u/D with variance 1/D; NaN where the measurement is missing, or the others
+/// predict nothing. Source: P. de Jong, J. Penzer, Diagnosing shocks in time series, J. Amer.
+/// Statist. Assoc. 93 (1998) 796. Cost: as likelihood_score().
+struct TuneResiduals {
+  std::vector<double> residual, variance;
+};
+[[nodiscard]] TuneResiduals deletion_residuals(const TuneSystem& system, View<double> series);
+
 }  // namespace proofmass::estimate

@@ -106,6 +106,9 @@ Fields channel_fields(const TuneReport& report, std::size_t k) {
                        {.meaning = "intervals used, each with a level of its own"}),
           field::count("readings", series.readings),
           field::count("missing", series.missing),
+          field::count("outliers", series.outliers.count,
+                       {.meaning = "not used: isolated measurements that the noise of the model "
+                                   "does not explain"}),
           field::number("log_likelihood", series.log_likelihood),
           filter(series)};
 }
@@ -195,16 +198,16 @@ std::vector<KeyFigure> figures_of(const TuneReport& report) {
 }
 
 Table channels_table(const TuneReport& report) {
-  Table table{
-      "Channels",
-      {"Channel", "Duration", "Rate", "Measurements", "Missing", "Intervals", "Log-likelihood"},
-      {}};
+  Table table{"Channels",
+              {"Channel", "Duration", "Rate", "Measurements", "Missing", "Outliers", "Intervals",
+               "Log-likelihood"},
+              {}};
   for (std::size_t k = 0; k < report.channels.size(); ++k) {
     const TunedSeries& series = report.tuning.series[k];
     table.rows.push_back({report.channels[k].name, duration_words(series.duration_s),
                           compact(series.rate_hz, 6) + " Hz", grouped(series.readings),
-                          grouped(series.missing), grouped(report.channels[k].segments),
-                          fixed(series.log_likelihood, 3)});
+                          grouped(series.missing), grouped(series.outliers.count),
+                          grouped(report.channels[k].segments), fixed(series.log_likelihood, 3)});
   }
   return table;
 }

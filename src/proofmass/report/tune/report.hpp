@@ -29,6 +29,9 @@ struct TuneReport {
   std::vector<estimate::TuneStudy> studies;  ///< for channels with two white noises
 };
 
+/// A warning for each channel with outliers, which were not used.
+[[nodiscard]] std::vector<Note> outlier_notes(const TuneReport& report);
+
 /// Model, parameters, innovations, study of gain and covariance. Holds a reference to the report,
 /// which must outlive it.
 [[nodiscard]] Document describe(const TuneReport& report);

@@ -135,7 +135,7 @@ NoiseNames noise_names(TuneModel model) {
   NoiseNames names;
   names.measurement = parameters[0].name;
   names.process = parameters[1].name;
-  if (model == TuneModel::rest || model == TuneModel::rest_markov) names.slow = parameters[1].name;
+  if (estimate::is_of_rest(model)) names.slow = parameters[1].name;
   return names;
 }
 
@@ -170,6 +170,21 @@ std::string choice_words(const estimate::TuneChoice& choice) {
   else if (choice.rest_share && *choice.rest_share < 1.0)
     words += " No rest was found in it: all of it is used.";
   return words;
+}
+
+std::vector<Note> outlier_notes(const TuneReport& report) {
+  std::vector<Note> notes;
+  for (std::size_t k = 0; k < report.channels.size(); ++k) {
+    const estimate::TuneOutliers& outliers = report.tuning.series[k].outliers;
+    if (outliers.count == 0) continue;
+    notes.push_back(
+        {Severity::warning,
+         fmt::format("{}: {} not used, up to {} {} from the neighbouring measurements: the noise "
+                     "of the model does not explain them, a filter has to gate them",
+                     report.channels[k].name, count_words(outliers.count, "outlier"),
+                     significant(outliers.largest, 2), printed(report.channels[k].unit.symbol))});
+  }
+  return notes;
 }
 
 std::string case_words(const estimate::GainCase& one) {
