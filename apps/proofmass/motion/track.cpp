@@ -190,9 +190,24 @@ void read_lists(const TrackCommand& command, const Recording& recording, TrackOp
     need_inside(io::check_inside(turns, recording.duration_s()), command.turns);
     for (const io::Instant& turn : turns) options.turns_s.push_back(turn.time_s);
   }
+}
+
+// A tracker may run before and after the recording; if none of its fixes is inside, they count from
+// something else.
+void read_fixes(const TrackCommand& command,
+                double duration_s,
+                TrackOptions& options,
+                std::vector<Note>& notes) {
   if (command.fixes.empty()) return;
-  const auto fixes = need(io::read_instants(command.fixes), Stage::reading);
-  need_inside(io::check_inside(fixes, recording.duration_s()), command.fixes);
+  const auto all = need(io::read_instants(command.fixes), Stage::reading);
+  auto fixes = all;
+  const std::size_t outside = io::drop_outside(fixes, duration_s);
+  if (fixes.empty()) need_inside(io::check_inside(all, duration_s), command.fixes);
+  if (outside > 0)
+    notes.push_back({Severity::warning,
+                     fmt::format("{}: {} of {} fixes are before or after the recording, which has "
+                                 "0 s to {:.6g} s, and are not used",
+                                 command.fixes, outside, all.size(), duration_s)});
   for (const io::Instant& fix : fixes) {
     if (!fix.position_m)
       throw Failure(bad_input, command.fixes +
@@ -277,6 +292,7 @@ TrackSensor prepare(const TrackCommand& command, TrackOptions& options, std::vec
   const bool warm = command.input.since_switch_on_s.has_value();
   if (!models.empty()) take_from_sensor(models.front(), warm, options);
   read_lists(command, recording, options);
+  read_fixes(command, recording.duration_s(), options, notes);
   TrackSensor sensor =
       sensor_of(command, recording, found.front(), sensor_model_of(models, 0), notes);
   if (found.size() > 1) sensor.name = found.front().triad.name;

@@ -153,6 +153,10 @@ Result<std::vector<Instant>> instants_of(const Result<std::vector<TextLine>>& li
   return instants;
 }
 
+bool is_inside(const Instant& instant, double duration_s) {
+  return instant.time_s >= 0.0 && instant.time_s <= duration_s;
+}
+
 }  // namespace
 
 Result<std::vector<Instant>> read_instants(const std::string& path) {
@@ -166,13 +170,18 @@ Result<std::vector<Instant>> read_instants(std::span<const std::byte> bytes,
 
 Status check_inside(const std::vector<Instant>& instants, double duration_s) {
   for (const Instant& instant : instants) {
-    if (instant.time_s >= 0.0 && instant.time_s <= duration_s) continue;
+    if (is_inside(instant, duration_s)) continue;
     return Error{Errc::invalid_argument,
                  fmt::format("line {}: {} s is outside the recording, which has 0 s to {} s: times "
                              "count from its first sample",
                              instant.line, in_words(instant.time_s), in_words(duration_s))};
   }
   return Done{};
+}
+
+std::size_t drop_outside(std::vector<Instant>& instants, double duration_s) {
+  return std::erase_if(instants,
+                       [&](const Instant& instant) { return !is_inside(instant, duration_s); });
 }
 
 }  // namespace proofmass::io

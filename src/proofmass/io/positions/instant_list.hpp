@@ -38,4 +38,7 @@ struct Instant {
 /// last. Errors: invalid_argument, for the first that does not, with its line.
 [[nodiscard]] Status check_inside(const std::vector<Instant>& instants, double duration_s);
 
+/// Drops the times outside a recording that lasts `duration_s` and returns their number.
+std::size_t drop_outside(std::vector<Instant>& instants, double duration_s);
+
 }  // namespace proofmass::io

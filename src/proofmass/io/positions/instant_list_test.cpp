@@ -89,5 +89,13 @@ TEST(ReadInstants, AnInstantOutsideTheRecordingIsNamed) {
             std::string::npos);
 }
 
+TEST(ReadInstants, InstantsOutsideTheRecordingAreDropped) {
+  auto read = instants("time\n-0.01\n0\n1\n8\n8.004\n").value();
+  EXPECT_EQ(drop_outside(read, 8.0), 2U);
+  ASSERT_EQ(read.size(), 3U);
+  EXPECT_EQ(read.front().time_s, 0.0);
+  EXPECT_EQ(read.back().time_s, 8.0);
+}
+
 }  // namespace
 }  // namespace proofmass::io::instant_list_test
