@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "proofmass/core/random.hpp"
 #include "proofmass/signal/audit/value_excerpts.hpp"
 #include "proofmass/signal/channel_audit.hpp"
 
@@ -109,6 +110,42 @@ TEST(Clipping, CountsTheSamplesAtTheRails) {
   const RecordingAudit found = audit(recording_of(values));
   EXPECT_EQ(found.channels[0].clipped, clipped);
   EXPECT_TRUE(found.is_bad());
+}
+
+// Noise reaches the limit for one sample or two at a time.
+TEST(Clipping, CountsTheSamplesThatPileUpAtALimit) {
+  for (const double step : {0.0, 1.0 / 128.0}) {
+    std::vector<double> values = noise(5000, 1.0);
+    std::size_t clipped = 0;
+    for (double& x : values) {
+      if (step > 0.0) x = step * std::round(x / step);
+      if (x >= 1.875) ++clipped;
+      x = std::min(x, 1.875);
+    }
+    const RecordingAudit found = audit(recording_of(values));
+    EXPECT_EQ(found.channels[0].clipping, Clipping::rail) << step;
+    EXPECT_EQ(found.channels[0].clipped, clipped);
+    EXPECT_EQ(found.channels[0].limit_high, 1.875);
+    EXPECT_FALSE(found.channels[0].limit_low.has_value());
+  }
+}
+
+// Shocks between rests of which the converter shows nothing: the rests are no motion that is held.
+TEST(Clipping, IsSeenInShocksBetweenRests) {
+  std::vector<double> values(6000, 0.25);
+  std::size_t clipped = 0;
+  for (std::size_t shock = 0; shock < 15; ++shock) {
+    const double omega = 0.3 + 0.06 * static_cast<double>(shock), high = 6.0;
+    for (std::size_t k = 0; k < 120; ++k) {
+      const double t = static_cast<double>(k);
+      const double x = 0.25 + 12.0 * std::exp(-t / 40.0) * std::sin(omega * t);
+      values[400 * shock + k] = std::min(std::round(x / 0.03125) * 0.03125, high);
+      if (values[400 * shock + k] == high) ++clipped;
+    }
+  }
+  const RecordingAudit found = audit(recording_of(values));
+  EXPECT_EQ(found.channels[0].limit_high, 6.0);
+  EXPECT_EQ(found.channels[0].clipped, clipped);
 }
 
 TEST(Clipping, IsNotSeenInASineOrInAFewLevelsOfNoise) {
@@ -353,8 +390,34 @@ TEST(Timing, TheRateIsAsUncertainAsTheLineThroughTheStamps) {
   const double std_hz = audit(stamped(stamps_s, 100.0)).timing.rate_std_hz.value();
   EXPECT_GT(std_hz, 0.5 * expected_hz);
   EXPECT_LT(std_hz, 3.0 * expected_hz);
-  EXPECT_NEAR(audit(stamped(stamps_s, 100.1)).timing.rate_std_hz.value(), 0.1, 0.001)
-      << "a rate that is not the line's is off by the difference";
+  const TimingAudit off = audit(stamped(stamps_s, 100.1)).timing;
+  EXPECT_NEAR(off.rate_hz, 100.0, 3.0 * expected_hz) << "a rate that is not the line's is replaced";
+  EXPECT_NEAR(off.rate_std_hz.value(), std_hz, expected_hz);
+}
+
+// A twentieth of the rows is lost and the stamps jitter by 12 % of a step: every gap has the length
+// of the samples that are missing, and none is invented.
+TEST(Timing, CountsTheLostRowsOfStampsThatJitter) {
+  Random random(5, "lost rows");
+  const std::vector<double> jitter_s = noise(8000, 1.2e-3);
+  std::vector<double> stamps_s;
+  std::size_t lost = 0;
+  for (std::size_t k = 0; k < jitter_s.size(); ++k) {
+    if (k > 0 && k + 1 < jitter_s.size() && random.uniform() < 0.05)
+      ++lost;
+    else
+      stamps_s.push_back(0.01 * static_cast<double>(k) + jitter_s[k]);
+  }
+  const TimingAudit found = audit(stamped(stamps_s, 100.0)).timing;
+  double missing = 0.0;
+  for (const Gap& gap : found.gaps) missing += std::round(100.0 * gap.duration_s) - 1.0;
+  EXPECT_EQ(found.gap_count, found.gaps.size());
+  EXPECT_NEAR(missing, static_cast<double>(lost), 1.0);
+  EXPECT_NEAR(found.rate_hz, 100.0, 0.02);
+  std::vector<double> whole_s;
+  for (std::size_t k = 0; k < jitter_s.size(); ++k)
+    whole_s.push_back(0.01 * static_cast<double>(k) + jitter_s[k]);
+  EXPECT_TRUE(audit(stamped(whole_s, 100.0)).timing.gaps.empty());
 }
 
 TEST(Timing, OfAUniformBaseHasNoJitter) {

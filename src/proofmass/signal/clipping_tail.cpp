@@ -14,6 +14,26 @@ std::size_t count_beside(View<double> values, double extreme, double width) {
       values, [&](double x) { return x != extreme && std::abs(x - extreme) <= width; }));
 }
 
+constexpr std::size_t neighbours = 8;
+
+struct Neighbours {
+  std::size_t levels = 0;         // at most eight
+  std::size_t most_frequent = 0;  // how often one of them occurs
+};
+
+// Of the lowest value, which the first of them is.
+Neighbours neighbours_of_lowest(std::vector<double> values) {
+  std::ranges::sort(values);
+  Neighbours out;
+  for (std::size_t from = 0, end = 0; from < values.size() && out.levels < neighbours; from = end) {
+    while (end < values.size() && values[end] == values[from]) ++end;
+    if (from == 0) continue;
+    ++out.levels;
+    out.most_frequent = std::max(out.most_frequent, end - from);
+  }
+  return out;
+}
+
 }  // namespace
 
 void ClippingTail::add(View<double> values, double extreme) {
@@ -65,6 +85,16 @@ double ClippingTail::beside(double width, const Subsample& sample) const {
   if (extreme + width < below_) return exact;
   const auto of_sample = static_cast<double>(count_beside(sample.values(), sign_ * extreme, width));
   return std::max(exact, of_sample * sample.share());
+}
+
+double ClippingTail::most_frequent_beside(const Subsample& sample) const {
+  const Neighbours exact = neighbours_of_lowest(kept_);
+  const bool is_all = std::isinf(below_);
+  if (exact.levels == neighbours || is_all) return static_cast<double>(exact.most_frequent);
+  std::vector<double> values(sample.values().begin(), sample.values().end());
+  for (double& value : values) value *= sign_;
+  return static_cast<double>(neighbours_of_lowest(std::move(values)).most_frequent) *
+         sample.share();
 }
 
 }  // namespace proofmass::signal

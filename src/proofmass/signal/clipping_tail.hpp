@@ -33,6 +33,10 @@ class ClippingTail {
   /// sample.
   [[nodiscard]] double beside(double width, const Subsample& sample) const;
 
+  /// How often the most frequent of the eight values next to the extreme occurs; of the same
+  /// series. 0 if all values are equal.
+  [[nodiscard]] double most_frequent_beside(const Subsample& sample) const;
+
  private:
   void keep(double value);
   void trim();

@@ -7,6 +7,7 @@
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/io/time/stamp_steps.hpp"
+#include "proofmass/signal/resample/hole_finder.hpp"
 #include "proofmass/signal/resample/stamp_band.hpp"
 
 namespace proofmass::io {
@@ -19,11 +20,20 @@ View<double> beginning(View<double> stamps) {
   return stamps.first(std::min(stamps.size(), most_rows));
 }
 
-/// Sample numbers if single intervals show what is missing.
+/// Sample numbers if the stamps around an interval show what is missing in it.
 std::vector<double> numbers_by_step(View<double> stamps, double step) {
-  std::vector<double> out{0.0};
-  for (std::size_t k = 1; k < stamps.size(); ++k)
-    out.push_back(out.back() + std::max(1.0, std::round((stamps[k] - stamps[k - 1]) / step)));
+  signal::HoleFinder finder(1.0 / step);
+  std::vector<signal::Hole> holes;
+  finder.add(stamps, holes);
+  finder.finish(holes);
+  std::vector<double> out;
+  double number = 0.0;
+  auto hole = holes.begin();
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    if (hole != holes.end() && hole->before == k) number += static_cast<double>((hole++)->missing);
+    out.push_back(number);
+    number += 1.0;
+  }
   return out;
 }
 

@@ -105,7 +105,7 @@ Wrong count_wrong(const Kind& kind, int recordings) {
     const signal::TimingAudit timing = signal::audit(recording).timing;
     if (kind.lost == 0.0 && timing.gap_count > 0) ++wrong.gaps;
     const double std_hz = timing.rate_std_hz.value_or(0.0);
-    const double error_hz = std::abs(time.rate_hz - drawn.rate_hz);
+    const double error_hz = std::abs(timing.rate_hz - drawn.rate_hz);
     if (error_hz > 1.96 * std_hz) ++wrong.outside;
     if (std_hz > 0.0) wrong.z = std::max(wrong.z, error_hz / std_hz);
     const auto grid = signal::even_grid(time, drawn.stamps_s.size());

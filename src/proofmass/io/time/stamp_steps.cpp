@@ -4,7 +4,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <complex>
 #include <iterator>
+#include <numbers>
 
 #include "proofmass/core/statistics.hpp"
 #include "proofmass/io/time/coarse_stamps.hpp"
@@ -92,6 +94,33 @@ bool are_multiples(const std::vector<double>& steps, double single) {
   return multiples * 10 >= steps.size() * 9 && singles * 2 >= steps.size();
 }
 
+/// The same for stamps with jitter: the longer intervals are multiples of the single one on
+/// average, as closely as its own scatter σ allows. The mean of e^(2πi step/single) is then
+/// e^(−2π²σ²), at the phase 0. Source: K. V. Mardia, P. E. Jupp, Directional Statistics (2000),
+/// section 3.5.7.
+bool are_multiples_with_jitter(const std::vector<double>& steps, double single) {
+  constexpr std::size_t fewest = 20;
+  constexpr double least_share = 0.5, of_expected = 0.6, largest_phase = 0.1, most_jitter = 0.3;
+  Moments singles;
+  std::complex<double> sum;
+  std::size_t longer = 0;
+  for (const double step : steps) {
+    const double periods = step / single;
+    if (std::abs(periods - 1.0) <= 0.5) singles.add(periods);
+    if (periods <= 1.5) continue;
+    sum += std::polar(1.0, 2.0 * std::numbers::pi * periods);
+    ++longer;
+  }
+  if (static_cast<double>(singles.count) < least_share * static_cast<double>(steps.size()))
+    return false;
+  const double jitter = singles.std();
+  if (longer < fewest || jitter > most_jitter) return false;
+  const std::complex<double> mean = sum / static_cast<double>(longer);
+  const double expected = std::exp(-2.0 * square(std::numbers::pi * jitter));
+  return std::abs(std::arg(mean)) < 2.0 * std::numbers::pi * largest_phase &&
+         std::abs(mean) > of_expected * expected;
+}
+
 /// The median of the intervals within half an interval of it: that of all is too long if rows are
 /// lost and stamps jitter, because each loss removes an interval from the lower half.
 double ordinary_median(const std::vector<double>& steps, double median_step) {
@@ -107,18 +136,32 @@ double ordinary_median(const std::vector<double>& steps, double median_step) {
   return ordinary;
 }
 
-/// The period from a line through the stamps, if it equals the single one within the uncertainty
-/// due to jitter; else 0. Only for stamps with jitter.
-double step_by_jittered_line(View<double> stamps, const std::vector<double>& steps, double single) {
+/// The mean of the intervals about this one: within half of it, and a tick at least.
+double ordinary_mean(const std::vector<double>& steps, double middle, double tick) {
+  const double reach = std::max(0.5 * middle, 1.001 * tick);
+  Moments near;
+  for (const double step : steps)
+    if (std::abs(step - middle) <= reach) near.add(step);
+  return near.mean;
+}
+
+/// The period from a line through the stamps, if it equals the single one to within the uncertainty
+/// due to jitter, or the bias of a median among lost rows; else 0. Only for stamps with jitter.
+double step_by_jittered_line(View<double> stamps,
+                             const std::vector<double>& steps,
+                             double single,
+                             bool is_rounded) {
+  constexpr double least_jitter = 0.01, bias = 0.005;
   std::vector<double> near;
   std::ranges::copy_if(steps, std::back_inserter(near),
                        [&](double step) { return std::abs(step - single) <= 0.5 * single; });
-  const double jitter = *robust_std(near);
-  if (jitter < 0.01 * single || near.size() * 2 < steps.size()) return 0.0;
+  // That of rounded intervals may be 0 by the robust estimate.
+  const double jitter = is_rounded ? moments(near).std() : *robust_std(near);
+  if (jitter < least_jitter * single || near.size() * 2 < steps.size()) return 0.0;
   // Source: asymptotic variance of the median, π/2 times that of the mean.
   const double std = 1.2533 * jitter / std::sqrt(static_cast<double>(near.size()));
-  const double line = step_by_line(stamps, single, 0.0);
-  return std::abs(line - single) <= 3.0 * std ? line : 0.0;
+  const double line = step_by_line(stamps, step_by_line(stamps, single, 0.0), 0.0);
+  return std::abs(line - single) <= std::max(3.0 * std, bias * single) ? line : 0.0;
 }
 
 bool come_in_bursts(const StampSteps& out, const std::vector<double>& steps) {
@@ -128,7 +171,7 @@ bool come_in_bursts(const StampSteps& out, const std::vector<double>& steps) {
   // With random loss, half of the lost rows are not followed by another: the long run is less than
   // two intervals.
   if (out.long_run > 3.0 * single) return true;
-  return !are_multiples(steps, single);
+  return !are_multiples(steps, single) && !are_multiples_with_jitter(steps, single);
 }
 
 }  // namespace
@@ -173,8 +216,11 @@ StampSteps measure_steps(View<double> stamps) {
         out.band = whole->band;
       }
     }
-  } else if (out.rounding == 0.0) {
-    if (const double line = step_by_jittered_line(stamps, up, out.single); line > 0.0)
+  } else if (out.coarse == 0.0) {
+    // The median of rounded intervals is one of a few ticks.
+    const bool is_rounded = out.rounding > 0.0;
+    const double usual = is_rounded ? ordinary_mean(up, out.median, out.rounding) : out.single;
+    if (const double line = step_by_jittered_line(stamps, up, usual, is_rounded); line > 0.0)
       out.single = line;
   }
   return out;

@@ -14,9 +14,11 @@ struct RailRuns {
   static constexpr std::size_t shortest_run = 3;
 
   double rail = 0.0;
-  std::size_t samples = 0;  ///< in runs of shortest_run or more
-  std::size_t runs = 0;     ///< number of these runs
-  std::size_t longest = 0;  ///< longest of all runs
+  std::size_t samples = 0;                   ///< in runs of shortest_run or more
+  std::size_t runs = 0;                      ///< number of these runs
+  std::size_t longest = 0;                   ///< longest of all runs
+  std::size_t visits = 0, brief_visits = 0;  ///< runs of any length; of one or two samples
+  std::size_t all_samples = 0;               ///< in runs of any length
   /// Slope at which the rail was reached, for each run of shortest_run or more (the first
   /// most_approaches of them): the smaller of the last two steps towards it, times a quarter of the
   /// run length if that is below four. A crest sampled in quantisation steps is flat for a run of L
@@ -28,6 +30,9 @@ struct RailRuns {
     longest = std::max(longest, run);
     samples += run >= shortest_run ? run : 0;
     runs += run >= shortest_run ? 1 : 0;
+    ++visits;
+    brief_visits += run < shortest_run ? 1 : 0;
+    all_samples += run;
   }
   /// For a run that was added: the two values before it, the later one first.
   void add_approach(std::size_t run, double before, double earlier);

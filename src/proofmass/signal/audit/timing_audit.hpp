@@ -28,11 +28,12 @@ class RunningTiming {
   [[nodiscard]] TimingAudit finish(const TimeBase& time);
 
  private:
-  void add_step(double before_s, double step_s);
+  void add_step(double step_s);
+  [[nodiscard]] Gap gap_at(const Hole& hole) const;
   void add_gap(const Gap& gap);
   void take_holes();
   void take_numbers();
-  [[nodiscard]] std::optional<double> rate_std_hz() const;
+  void take_rate(TimingAudit& out) const;
 
   double rate_hz_;
   double band_s_;

@@ -10,8 +10,9 @@
 namespace proofmass::signal {
 namespace {
 
-constexpr std::size_t nearby = 8;     // samples on either side of a long interval
-constexpr double longest_step = 1.5;  // in sample periods, if no sample is missing
+constexpr std::size_t nearby = 8;       // samples on either side of a long interval
+constexpr double longest_step = 1.5;    // in sample periods, usually if no sample is missing
+constexpr double doubtful_step = 1.25;  // in sample periods, if one may be missing
 
 }  // namespace
 
@@ -47,6 +48,8 @@ void HoleFinder::count(double missing, std::vector<Hole>& holes) {
   ++hole_count_;
   // Limited: beyond any recording's size, which check() rejects.
   holes.push_back({decided_, static_cast<std::size_t>(std::min(missing, 0x1p62))});
+  std::erase_if(near_, [&](const Hole& hole) { return hole.before + nearby < decided_; });
+  near_.push_back(holes.back());
 }
 
 void HoleFinder::decide_by_band(bool is_end, std::vector<Hole>& holes) {
@@ -75,15 +78,23 @@ void HoleFinder::decide(bool is_end, std::vector<Hole>& holes) {
   for (; decided_ < samples_; ++decided_) {
     const std::size_t at = decided_ - first;
     const double steps = (recent_[at] - recent_[at - 1]) * rate_hz_;
+    const bool is_doubtful = steps > longest_step || may_be_two(steps);
+    if (is_doubtful && !is_end && at + needed_after(at) >= recent_.size()) return;
     if (!(steps > longest_step)) {
       ascending_ = ascending_ && steps > -1.0;
       squares_ += (steps - 1.0) * (steps - 1.0);
       ++regular_;
-      continue;
     }
-    if (!is_end && at + needed_after(at) >= recent_.size()) return;
-    count(missing_before(at), holes);
+    if (is_doubtful) count(missing_before(at), holes);
   }
+}
+
+// Whether jitter may have shortened an interval of two periods to this one.
+bool HoleFinder::may_be_two(double steps) const {
+  constexpr double jitters = 4.0;
+  constexpr std::size_t fewest = 100;
+  if (!(steps > doubtful_step) || regular_ < fewest) return false;
+  return square(2.0 - steps) * static_cast<double>(regular_) < square(jitters) * squares_;
 }
 
 bool HoleFinder::is_long(std::size_t at) const {
@@ -99,10 +110,19 @@ std::size_t HoleFinder::needed_after(std::size_t at) const {
   return may_be_stall ? nearby + static_cast<std::size_t>(late) : nearby;
 }
 
-// In periods, relative to an even grid through another sample.
+// In periods, relative to an even grid through another sample. Samples missing before it count only
+// where they are decided.
 double HoleFinder::lateness(std::size_t at, std::size_t than) const {
-  return (recent_[at] - recent_[than]) * rate_hz_ -
-         (static_cast<double>(at) - static_cast<double>(than));
+  return (recent_[at] - recent_[than]) * rate_hz_ - (number_of(at) - number_of(than));
+}
+
+// On the grid, relative to that of the first undecided sample if none is missing before it.
+double HoleFinder::number_of(std::size_t at) const {
+  const std::size_t sample = at + samples_ - recent_.size();
+  double number = static_cast<double>(sample) - static_cast<double>(decided_);
+  for (const Hole& hole : near_)
+    if (hole.before > sample) number -= static_cast<double>(hole.missing);
+  return number;
 }
 
 double HoleFinder::median_lateness(std::size_t from, std::size_t end, std::size_t than) const {
@@ -111,27 +131,45 @@ double HoleFinder::median_lateness(std::size_t from, std::size_t end, std::size_
   return *median(View<double>(all).first(end - from));
 }
 
-// Samples missing before the one at this index of the recent ones, which follows a long interval.
+// Samples missing before the one at this index of the recent ones, the first undecided one, which
+// follows a long interval.
 //
 // - By the interval, if it is a whole number of periods to within a fourth; otherwise by the
-//   medians of up to `nearby` stamps on either side, relative to an even grid, as far as no other
-//   long interval follows: these average out the jitter of the two stamps.
-// - At most as many as are missing in all of `nearby` stamps on either side, other long intervals
-//   included: after late stamps others follow early.
-double HoleFinder::missing_before(std::size_t at) const {
+//   medians of up to `nearby` stamps on either side, relative to an even grid, up to the next long
+//   interval: these average out the jitter of the two stamps.
+// - Then at most as many as by the median of all `nearby` later stamps: where more are missing,
+// they
+//   are later still.
+// - At most as many as are missing in all of `nearby` stamps on either side: after late stamps
+//   others follow early.
+double HoleFinder::missing_before(std::size_t at) {
   constexpr double clear = 0.25;
-  double missing = -lateness(at - 1, at);
-  if (std::abs(missing - std::round(missing)) > clear) {
-    std::size_t first = at - 1, end = at + 1;
-    while (first > 0 && at - first < nearby && !is_long(first)) --first;
-    while (end < recent_.size() && end - at < nearby && !is_long(end)) ++end;
-    missing = median_lateness(at, end, at) - median_lateness(first, at, at);
+  const std::size_t last = std::min(at + nearby, recent_.size());
+  std::size_t end = at + 1;
+  while (end < last && !is_long(end)) ++end;
+  const double before = median_lateness(at - std::min(at, nearby), at, at);
+  const double shift = median_lateness(at, end, at) - before;
+  const double of_most = median_lateness(at, last, at) - before;
+  if (!is_long(at)) {
+    const double missing = std::min(shift, of_most) > 1.0 - clear ? 1.0 : 0.0;
+    add_doubt(shift - missing);
+    return missing;
   }
+  const double interval = -lateness(at - 1, at);
+  const bool is_clear = std::abs(interval - std::round(interval)) <= clear;
+  double missing = std::round(is_clear ? interval : std::min(shift, of_most));
   const double in_all = lateness(std::min(at + nearby, recent_.size() - 1), at) -
                         lateness(at - std::min(at, nearby), at);
   // Rounded up: the jitter of the outermost stamps must not hide a missing sample.
-  missing = std::max(0.0, std::min(std::round(missing), std::floor(in_all + 1.0 - clear)));
+  missing = std::max(0.0, std::min(missing, std::floor(in_all + 1.0 - clear)));
+  if (!is_clear) add_doubt(shift - missing);
   return missing > nearby ? missing_after_stall(at, missing) : missing;
+}
+
+// A median that is less than a fourth of a period off confirms the number.
+void HoleFinder::add_doubt(double off) {
+  constexpr double clear = 0.25;
+  if (std::abs(off) > clear) doubt_ += std::min(1.0, square(off));
 }
 
 // If the computer stalled, all rows of that time were stamped when it went on: the stamps that
