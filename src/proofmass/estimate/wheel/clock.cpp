@@ -16,14 +16,22 @@ double interpolated(const std::vector<double>& x, const std::vector<double>& y, 
   return std::lerp(y[i - 1], y[i], (at - x[i - 1]) / (x[i] - x[i - 1]));
 }
 
-/// The first's times on a grid of 20 Hz at which the shifted second has measurements too.
+bool is_lost(const WheelMotion& motion, double t) {
+  return std::ranges::any_of(motion.lost, [t](const LostInterval& interval) {
+    return t >= interval.from_s && t <= interval.to_s;
+  });
+}
+
+/// The first's times on a grid of 20 Hz at which the shifted second has measurements too, and
+/// neither is lost.
 std::vector<double> common_times(const WheelMotion& first,
                                  const WheelMotion& second,
                                  double offset_s) {
   const double start = std::max(first.time_s->front(), second.time_s->front() - offset_s);
   const double end = std::min(first.time_s->back(), second.time_s->back() - offset_s);
   std::vector<double> times;
-  for (double t = start; t <= end; t += 0.05) times.push_back(t);
+  for (double t = start; t <= end; t += 0.05)
+    if (!is_lost(first, t) && !is_lost(second, t + offset_s)) times.push_back(t);
   return times;
 }
 

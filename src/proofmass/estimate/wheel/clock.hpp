@@ -7,11 +7,17 @@
 
 namespace proofmass::estimate {
 
-/// A wheel's motion estimated by one sensor alone.
+struct LostInterval {
+  double from_s = 0.0, to_s = 0.0;
+};
+
+/// A wheel's motion estimated by one sensor alone. Where its angle was lost, its speed is unknown
+/// and its angle afterwards is known but for whole turns.
 struct WheelMotion {
   const std::vector<double>* time_s = nullptr;
   const std::vector<double>* angle_rad = nullptr;
   const std::vector<double>* speed_radps = nullptr;
+  std::vector<LostInterval> lost = {};
 };
 
 /// Alignment of two sensors of one wheel: second(t + offset) = first(t) + phase.

@@ -1,5 +1,6 @@
 #include "proofmass/estimate/wheel/clock.hpp"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include "proofmass/estimate/wheel_test_support.hpp"
@@ -43,6 +44,27 @@ TEST(FitClocks, RecoversTheOffsetAndThePhaseOfTwoClocks) {
     EXPECT_LT(fit->offset_s.std, 1e-3);
     EXPECT_NEAR(fit->phase_rad, 0.8, 1e-3);
   }
+}
+
+// What an estimate without measurements is in a gap: any speed, and an angle some turns off behind
+// it.
+TEST(FitClocks, IntervalsInWhichAnAngleWasLostDoNotCount) {
+  Seen first(changing, 0.0, 0.0, 1e-3, 1);
+  const Seen second(changing, 2.3, 0.8, 1e-3, 2);
+  for (std::size_t k = 0; k < first.time_s.size(); ++k) {
+    const double t = first.time_s[k];
+    if (t > 9.0 && t < 13.0) first.speed_radps[k] = 60.0 * (t - 11.0);
+    if (t > 11.0) first.angle_rad[k] += 10.0 * test::pi;
+  }
+  WheelMotion lost = first.motion();
+  lost.lost = {{9.0, 13.0}};
+  const auto fit = fit_clocks(lost, second.motion(), true);
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_NEAR(fit->offset_s.value, 2.3, 1e-3);
+  EXPECT_NEAR(fit->phase_rad, 0.8, 2e-3);
+  EXPECT_GT(
+      std::abs(fit_clocks(first.motion(), second.motion(), true).value().offset_s.value - 2.3),
+      0.1);
 }
 
 TEST(FitClocks, OffsetIsWhatToTakeFromTheSecondsStamps) {

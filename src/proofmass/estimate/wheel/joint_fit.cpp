@@ -310,7 +310,11 @@ void forget_measurements(WheelReadings& readings) {
 }
 
 WheelMotion motion_of(const WheelFit& fit) {
-  return {&fit.series.time_s, &fit.series.angle_rad, &fit.series.speed_radps};
+  const std::vector<double>& time_s = fit.series.time_s;
+  WheelMotion motion{&time_s, &fit.series.angle_rad, &fit.series.speed_radps};
+  for (const WheelDoubt& doubt : fit.doubts)
+    motion.lost.push_back({time_s[doubt.first], time_s[doubt.last]});
+  return motion;
 }
 
 /// The encoder is on the clock of the first sensor.
@@ -350,10 +354,12 @@ Result<ClockFit> relate(const Single& first, const Single& second, const WheelOp
   if (!options.clocks_shared) return found;
   ClockFit clocks = *found;
   // With a shared clock an offset must be clearly significant before the stamps are declared wrong,
-  // which it is not if an angle was lost.
+  // which a small one is not if an angle was lost.
   Uncertain& offset_s = clocks.offset_s;
   const bool lost = !first.fit.doubts.empty() || !second.fit.doubts.empty();
-  if (lost || std::abs(offset_s.value) < std::max(5.0 * offset_s.std, 2e-4)) offset_s.value = 0.0;
+  constexpr double small_s = 0.1, least_s = 2e-4;
+  if (std::abs(offset_s.value) < std::max(5.0 * offset_s.std, lost ? small_s : least_s))
+    offset_s.value = 0.0;
   return clocks;
 }
 
