@@ -183,7 +183,7 @@ void compare(std::size_t most) {
     const auto n = static_cast<double>(count);
     auto state = start<S>();
     const double filter_s =
-        seconds([&] { filter(model, 0, count, Gate{}, state, [](std::size_t, const auto&) {}); });
+        seconds([&] { filter(model, {0, count}, Gate{}, state, [](std::size_t, const auto&) {}); });
     std::vector<double> ours;
     const double smoother_s = seconds([&] { ours = our_smoother(model); });
     std::printf("%10zu %14.0f %16.0f %14.1f %14ld", count, n / filter_s, n / smoother_s,

@@ -215,26 +215,32 @@ class Fit {
   // Drops the noise whose omission costs least, if the cost is not significant; a Markov bias, two
   // parameters, before any other, because one of infinite correlation time is a random walk too.
   bool drop_one() {
-    constexpr double certain = 0.1;
-    const double best = problem_.log_likelihood();
     for (const bool markov : {true, false}) {
-      std::optional<std::size_t> weakest;
-      double least = chi_square_quantile(0.95, markov ? 2.0 : 1.0);
-      for (std::size_t k = 0; k < problem_.unknowns.size(); ++k) {
-        if ((problem_.parameter(k).role == TuneRole::markov_std) != markov) continue;
-        if ((!markov && log_std_[k] < certain) || !may_vanish(k)) continue;
-        TuneProblem rest = without(problem_, k, 0.0);
-        drop_time_constants(rest);
-        const double cost = 2.0 * (best - maximise(rest, false).log_likelihood);
-        if (cost >= least) continue;
-        weakest = k;
-        least = cost;
-      }
-      if (!weakest) continue;
-      leave_out(*weakest);
+      const std::optional<std::size_t> found = weakest(markov);
+      if (!found) continue;
+      leave_out(*found);
       return true;
     }
     return false;
+  }
+
+  // The noise whose omission costs least, if that is not significant.
+  std::optional<std::size_t> weakest(bool markov) {
+    constexpr double certain = 0.1;
+    const double best = problem_.log_likelihood();
+    std::optional<std::size_t> weakest;
+    double least = chi_square_quantile(0.95, markov ? 2.0 : 1.0);
+    for (std::size_t k = 0; k < problem_.unknowns.size(); ++k) {
+      if ((problem_.parameter(k).role == TuneRole::markov_std) != markov) continue;
+      if ((!markov && log_std_[k] < certain) || !may_vanish(k)) continue;
+      TuneProblem rest = without(problem_, k, 0.0);
+      drop_time_constants(rest);
+      const double cost = 2.0 * (best - maximise(rest, false).log_likelihood);
+      if (cost >= least) continue;
+      weakest = k;
+      least = cost;
+    }
+    return weakest;
   }
 
   // A Markov bias of zero variance has no time constant.
@@ -411,6 +417,26 @@ void add_fixed(const TuneOptions& options, Tuning& into) {
   }
 }
 
+// The channels of a group, fitted together.
+Status tune_group(const std::vector<TuneSeries>& series,
+                  const Group& group,
+                  const TuneOptions& options,
+                  Tuning& tuning) {
+  std::vector<TuneSeries> own;
+  for (const std::size_t s : group) own.push_back(series[s]);
+  TuneReadings readings(own);
+  Tuning course;
+  Result<Fit> found = fit_without_outliers(own, options, readings, course);
+  if (!found) return found.error().at(own.front().name);
+  Fit fit = std::move(found).value();
+  fit.finish(course);
+  add_course(tuning, course);
+  add_results(fit, group, series.size(), tuning);
+  for (std::size_t k = 0; k < group.size(); ++k)
+    set_outliers(tuning.series[group[k]], readings.outliers()[k]);
+  return Done{};
+}
+
 }  // namespace
 
 Result<Tuning> tune(const std::vector<TuneSeries>& series, const TuneOptions& options) {
@@ -433,18 +459,7 @@ Result<Tuning> tune(const std::vector<TuneSeries>& series, const TuneOptions& op
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (options.progress)
       options.progress("tuning", static_cast<double>(g) / static_cast<double>(groups.size()));
-    std::vector<TuneSeries> own;
-    for (const std::size_t s : groups[g]) own.push_back(series[s]);
-    TuneReadings readings(own);
-    Tuning course;
-    Result<Fit> found = fit_without_outliers(own, options, readings, course);
-    if (!found) return found.error().at(own.front().name);
-    Fit fit = std::move(found).value();
-    fit.finish(course);
-    add_course(tuning, course);
-    add_results(fit, groups[g], series.size(), tuning);
-    for (std::size_t k = 0; k < groups[g].size(); ++k)
-      set_outliers(tuning.series[groups[g][k]], readings.outliers()[k]);
+    if (Status done = tune_group(series, groups[g], options, tuning); !done) return done.error();
   }
   add_fixed(options, tuning);
   return tuning;

@@ -39,7 +39,7 @@ TEST(Filter, CovarianceStaysSymmetricAndPositiveDefiniteOverAMillionSteps) {
   state.x.cov.diagonal().setConstant(1e10);  // P₀ / R = 1e16
   std::size_t broken = 0;
   double asymmetry = 0.0;
-  filter(model, 0, model.size(), Gate{}, state, [&](std::size_t k, const auto& step) {
+  filter(model, {0, model.size()}, Gate{}, state, [&](std::size_t k, const auto& step) {
     if (k % 100 != 0 && k > 1000) return;
     const Mat<4, 4>& P = step.filtered.cov;
     // Scaled to a unit diagonal; the off-diagonal entries are correlations and must be below one.

@@ -287,7 +287,7 @@ void run_into(const AnyModel& model,
   };
   if (!backwards) {
     FilterState<at::states> state = start;
-    filter(model, 0, model.size(), gate, state, forward);
+    filter(model, {0, model.size()}, gate, state, forward);
     return;
   }
   pass.path.resize(model.size());

@@ -63,7 +63,7 @@ void smooth_fixed_lag(const Model& model,
   if (size == 0) return;
   FixedLag<N> window(std::min(lag, size - 1));
   FilterState<N> state = prior;
-  filter(model, 0, size, gate, state, [&](std::size_t k, const StepOf<Model>& step) {
+  filter(model, {0, size}, gate, state, [&](std::size_t k, const StepOf<Model>& step) {
     window.push(step, active_states(model));
     if (k >= lag) visit(k - lag, window.state(lag));
   });

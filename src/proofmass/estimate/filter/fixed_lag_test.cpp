@@ -37,7 +37,7 @@ TEST(FixedLag, EveryStateInTheWindowIsTheFixedIntervalSmoothersOfTheReadingsSoFa
     series.set_reopened(test::oscillator_prior().cov);
     FixedLag<3> window(lag);
     FilterState<3> state{test::oscillator_prior()};
-    filter(series, 0, count, gate, state, [&](std::size_t k, const auto& step) {
+    filter(series, {0, count}, gate, state, [&](std::size_t k, const auto& step) {
       SCOPED_TRACE(k);
       window.push(step);
       const auto expected = whole_interval(k + 1, gate);

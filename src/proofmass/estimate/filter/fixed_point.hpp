@@ -69,7 +69,7 @@ template <StateSpaceModel Model>
   for (const std::size_t point : points) PM_EXPECTS(point < model.size());
   std::vector<PastState<N>> past(points.size());
   FilterState<N> state = prior;
-  filter(model, 0, model.size(), gate, state, [&](std::size_t k, const StepOf<Model>& step) {
+  filter(model, {0, model.size()}, gate, state, [&](std::size_t k, const StepOf<Model>& step) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (points[i] == k) past[i] = PastState<N>::from(step.filtered, active_states(model));
       if (points[i] < k) learn(past[i], step);

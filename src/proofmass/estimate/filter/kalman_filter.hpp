@@ -175,16 +175,23 @@ struct Step {
 template <StateSpaceModel Model>
 using StepOf = Step<Model::states, Model::moving, Model::channels>;
 
-/// Propagates x and the count of epochs gated from epoch k − 1 to k (at k = 0: only its
-/// measurements) and records the step but for its `filtered`, which may be x itself.
+/// A filter's state where it is kept.
+template <int N>
+struct FilterStateAt {
+  Gaussian<N>& x;
+  int& epochs_gated;
+};
+
+/// Propagates the state from epoch k − 1 to k (at k = 0: only its measurements) and records the
+/// step but for its `filtered`, which may be the state's own.
 template <StateSpaceModel Model>
 void advance_in_place(const Model& model,
                       std::size_t k,
                       const Gate& gate,
-                      Gaussian<Model::states>& x,
-                      int& epochs_gated,
+                      FilterStateAt<Model::states> state,
                       StepOf<Model>& step) {
   constexpr int N = Model::states;
+  auto& [x, epochs_gated] = state;
   const int active = active_states(model);
   if (k > 0) {
     const auto transition = model.transition(x.mean, k);
@@ -220,7 +227,7 @@ void advance(const Model& model,
              FilterState<Model::states>& state,
              StepOf<Model>& step) {
   constexpr int N = Model::states;
-  advance_in_place(model, k, gate, state.x, state.epochs_gated, step);
+  advance_in_place(model, k, gate, {state.x, state.epochs_gated}, step);
   step.filtered.mean = state.x.mean;
   if constexpr (N > 12)
     copy_entries(state.x.cov.data(), step.filtered.cov.data(), N * N);
@@ -228,19 +235,22 @@ void advance(const Model& model,
     step.filtered.cov = state.x.cov;
 }
 
-/// Filters epochs [first, last) from `state`, which is set at the end, and calls visit(k, step) for
-/// each.
+/// Epochs first to last − 1.
+struct EpochRange {
+  std::size_t first = 0, last = 0;
+};
+
+/// Filters the epochs from `state`, which is set at the end, and calls visit(k, step) for each.
 template <StateSpaceModel Model, class Visit>
 void filter(const Model& model,
-            std::size_t first,
-            std::size_t last,
+            EpochRange epochs,
             const Gate& gate,
             FilterState<Model::states>& state,
             Visit&& visit) {
   StepOf<Model> step;
   step.filtered = state.x;
-  for (std::size_t k = first; k < last; ++k) {
-    advance_in_place(model, k, gate, step.filtered, state.epochs_gated, step);
+  for (std::size_t k = epochs.first; k < epochs.last; ++k) {
+    advance_in_place(model, k, gate, {step.filtered, state.epochs_gated}, step);
     visit(k, std::as_const(step));
   }
   state.x = step.filtered;

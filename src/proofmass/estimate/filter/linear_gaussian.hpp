@@ -157,7 +157,7 @@ template <int N, int M, int U>
   }
   series.set_reopened(start.proper.cov);
   FilterState<N> state{start.proper};
-  filter(series, 0, series.size(), options.gate, state,
+  filter(series, {0, series.size()}, options.gate, state,
          [&](std::size_t k, const Step<N, N, M>& step) { detail::note(series, k, step, run); });
   return run;
 }

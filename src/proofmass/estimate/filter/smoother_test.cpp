@@ -289,7 +289,7 @@ TEST(Gate, AfterItsPatienceTheFilterReopensAndFindsTheSignalAgain) {
   std::vector<double> means;
   std::vector<int> used;
   FilterState<1> state{unit_normal()};
-  filter(model, 0, model.size(), gate, state, [&](std::size_t, const auto& step) {
+  filter(model, {0, model.size()}, gate, state, [&](std::size_t, const auto& step) {
     means.push_back(step.filtered.mean(0));
     used.push_back(step.count > 0 && step.updates[0].used ? 1 : 0);
   });
@@ -305,7 +305,7 @@ TEST(Gate, OneOutlierNeitherMovesTheFilterNorRunsDownItsPatience) {
   JumpingLevel model{std::vector<double>(100, 0.0)};
   for (std::size_t k = 10; k < 100; k += 2) model.z[k] = 500.0;
   FilterState<1> state{unit_normal()};
-  filter(model, 0, model.size(), {.huber = 3.0, .limit = 10.0, .patience = 2}, state,
+  filter(model, {0, model.size()}, {.huber = 3.0, .limit = 10.0, .patience = 2}, state,
          [](std::size_t, const auto&) {});
   EXPECT_NEAR(state.x.mean(0), 0.0, 1e-12);
   EXPECT_LT(state.x.cov(0, 0), 0.01);

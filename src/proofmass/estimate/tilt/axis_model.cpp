@@ -105,7 +105,7 @@ double axis_log_likelihood(const AxisTiltEpochs& epochs,
   const AxisTiltModel model(epochs, noise, options);
   FilterState<3> state = model.start();
   double sum = 0.0;
-  filter(model, 0, model.size(), axis_gate, state,
+  filter(model, {0, model.size()}, axis_gate, state,
          [&](std::size_t, const StepOf<AxisTiltModel>& step) {
            if (step.count == 0) return;
            const Update<3>& u = step.updates[0];

@@ -65,7 +65,7 @@ double tilt_log_likelihood(const TiltEpochs& epochs,
   const TiltModel model(epochs, known, motion);
   FilterState<9> state = model.start();
   double sum = 0.0;
-  filter(model, 0, model.size(), tilt_gate, state,
+  filter(model, {0, model.size()}, tilt_gate, state,
          [&](std::size_t k, const StepOf<TiltModel>& step) {
            if (epochs.resting[k] != 0) return;
            sum += tilt_log_likelihood(step, model.accel_readings(k));

@@ -23,7 +23,7 @@ double log_density_of_fixes(const AlongAxis& along) {
   const InertialAxis model{knots, along.run.noise};
   FilterState<3> state = inertial_start(along.run.start);
   double sum = 0.0;
-  filter(model, 0, model.size(), Gate{}, state,
+  filter(model, {0, model.size()}, Gate{}, state,
          [&](std::size_t k, const StepOf<InertialAxis>& step) {
            if (std::isnan(knots[k].position_m)) return;
            const auto& fix = step.updates[static_cast<std::size_t>(step.count - 1)];

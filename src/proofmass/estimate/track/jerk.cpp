@@ -10,7 +10,7 @@ namespace {
 double log_likelihood(const PvaAxis<1>& axis, double speed_std_mps) {
   FilterState<PvaAxis<1>::states> state = axis.start(speed_std_mps);
   double sum = 0.0;
-  filter(axis, 0, axis.size(), Gate{}, state, [&](std::size_t, const StepOf<PvaAxis<1>>& step) {
+  filter(axis, {0, axis.size()}, Gate{}, state, [&](std::size_t, const StepOf<PvaAxis<1>>& step) {
     for (int i = 0; i < step.count; ++i) {
       const auto& update = step.updates[static_cast<std::size_t>(i)];
       sum -= 0.5 * (std::log(2.0 * std::numbers::pi * update.expected) + update.nis());

@@ -95,7 +95,7 @@ AxisPass pass_over(const AxisRun& run) {
                            run.smoother_start.speed_std_mps < run.start.speed_std_mps;
   if (is_narrower) {
     FilterState<3> state = inertial_start(run.start);
-    filter(model, 0, model.size(), Gate{}, state, keep_filtered);
+    filter(model, {0, model.size()}, Gate{}, state, keep_filtered);
   }
   smooth(
       model, inertial_start(run.smoother_start), Gate{},

@@ -19,7 +19,7 @@ Score score(View<InertialEpoch> knots, const InertialNoise& noise, const Inertia
   FilterState<3> state = inertial_start(start);
   Score score;
   std::size_t arrivals = 0;
-  filter(model, 0, model.size(), Gate{}, state,
+  filter(model, {0, model.size()}, Gate{}, state,
          [&](std::size_t k, const StepOf<InertialAxis>& step) {
            for (int i = 0; i < step.count; ++i) {
              const auto& update = step.updates[static_cast<std::size_t>(i)];
@@ -176,7 +176,7 @@ std::vector<double> surprise_of_rests(View<InertialEpoch> knots,
   const InertialAxis model{knots, noise};
   FilterState<3> state = inertial_start(start);
   bool level_due = false;
-  filter(model, 0, model.size(), Gate{}, state,
+  filter(model, {0, model.size()}, Gate{}, state,
          [&](std::size_t k, const StepOf<InertialAxis>& step) {
            const bool arrives =
                knots[k].arrives_at_rest || (k == 0 && knots[k].velocity_std_mps > 0.0);
@@ -197,7 +197,7 @@ std::vector<Closure> closures(View<InertialEpoch> knots,
   FilterState<3> state = inertial_start(start);
   double now_s = 0.0, left_s = 0.0;
   std::array<bool, 3> seen{};  // the first reading of a state only says where it starts
-  filter(model, 0, model.size(), Gate{}, state,
+  filter(model, {0, model.size()}, Gate{}, state,
          [&](std::size_t k, const StepOf<InertialAxis>& step) {
            now_s += knots[k].dt_s;
            for (int i = 0; i < step.count; ++i) {

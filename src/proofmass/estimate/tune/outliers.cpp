@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "proofmass/core/contract.hpp"
@@ -56,6 +57,28 @@ bool is_beyond_neighbours(const Residual& one, View<Residual> all, std::size_t i
   return beyond > 0.5 * std::abs(one.size);
 }
 
+struct Limits {
+  double standard;    // in standard deviations
+  double resolution;  // the step of the converter
+};
+
+std::vector<Residual> outliers_among(View<Residual> all, const Limits& limits) {
+  constexpr std::size_t longest_run = 5;
+  constexpr double steps = 1.5;
+  const auto stands_out = [&](const Residual& one) {
+    return one.standard > limits.standard && std::abs(one.size) > steps * limits.resolution;
+  };
+  std::vector<Residual> outliers;
+  for (std::size_t i = 0, end = 0; i < all.size(); i = std::max(end, i + 1)) {
+    for (end = i; end < all.size() && stands_out(all[end]);) ++end;
+    if (end - i > longest_run) continue;
+    std::ranges::copy_if(
+        all.subspan(i, end - i), std::back_inserter(outliers),
+        [&](const Residual& one) { return is_beyond_neighbours(one, all, i, end); });
+  }
+  return outliers;
+}
+
 }  // namespace
 
 TuneReadings::TuneReadings(std::vector<TuneSeries> series)
@@ -78,24 +101,14 @@ double TuneReadings::largest_share() const {
 
 std::size_t TuneReadings::drop_outliers(const TuneProblem& problem) {
   PM_EXPECTS(problem.series().size() == series_.size());
-  constexpr std::size_t longest_run = 5;
-  constexpr double steps = 1.5;
   const double limit = std::sqrt(2.0 * std::log(1000.0 * static_cast<double>(problem.readings())));
   std::size_t dropped = 0;
   for (std::size_t s = 0; s < series_.size(); ++s) {
-    const auto stands_out = [&](const Residual& one) {
-      return one.standard > limit && std::abs(one.size) > steps * resolution_[s];
-    };
     for (std::size_t g = 0; g < series_[s].segments.size(); ++g) {
       const std::vector<Residual> all = residuals_of(problem.system(s), series_[s].segments[g]);
-      for (std::size_t i = 0, end = 0; i < all.size(); i = std::max(end, i + 1)) {
-        for (end = i; end < all.size() && stands_out(all[end]);) ++end;
-        if (end - i > longest_run) continue;
-        for (std::size_t k = i; k < end; ++k) {
-          if (!is_beyond_neighbours(all[k], all, i, end)) continue;
-          drop(s, g, all[k].k, all[k].size);
-          ++dropped;
-        }
+      for (const Residual& one : outliers_among(all, {limit, resolution_[s]})) {
+        drop(s, g, one.k, one.size);
+        ++dropped;
       }
     }
   }

@@ -69,7 +69,7 @@ class Pass {
     if (state.diffuse > 0) {
       const Vec<N> Minf = state.Pinf * h_;
       if (const double Sinf = h_.dot(Minf); Sinf > tiny * state.Pinf.trace()) {
-        end_diffuse(y, S, {M, Minf, Sinf}, state, trace, score);
+        end_diffuse({y, S, M, Minf, Sinf}, state, trace, score);
         return true;
       }
     }
@@ -100,7 +100,7 @@ class Pass {
     return {u, D};
   }
 
-  [[nodiscard]] const Square<N>& F() const { return F_; }
+  [[nodiscard]] const Square<N>& transition() const { return F_; }
   [[nodiscard]] double variance(const State<N>& state) const { return h_.dot(state.P * h_) + R_; }
   [[nodiscard]] double predicted(const State<N>& state) const { return h_.dot(state.x); }
 
@@ -110,20 +110,16 @@ class Pass {
   static constexpr double tiny = 1e-12;
 
   struct Diffuse {
+    double y, S;
     const Vec<N>&M, &Minf;
     double Sinf;
   };
 
-  void end_diffuse(double y,
-                   double S,
-                   const Diffuse& d,
-                   State<N>& state,
-                   Trace<N>& trace,
-                   TuneScore& score) const {
+  void end_diffuse(const Diffuse& d, State<N>& state, Trace<N>& trace, TuneScore& score) const {
     const Vec<N> K = trace.gain = d.Minf / d.Sinf;
-    state.x += K * y;
+    state.x += K * d.y;
     state.P =
-        symmetric(state.P + S * K * K.transpose() - d.M * K.transpose() - K * d.M.transpose());
+        symmetric(state.P + d.S * K * K.transpose() - d.M * K.transpose() - K * d.M.transpose());
     state.Pinf = symmetric(state.Pinf - K * d.Minf.transpose());
     if (--state.diffuse == 0) state.Pinf.setZero();
     score.log_likelihood -= 0.5 * std::log(d.Sinf);
@@ -211,13 +207,13 @@ TuneScore score_of(const TuneSystem& system, View<double> series) {
   for (std::size_t k = kept.traces.size(); k-- > 0;) {
     if (k + 1 < kept.traces.size()) {
       by_Q += r * r.transpose() - L;
-      const Vec<N> Fr = pass.F().transpose() * r;
+      const Vec<N> Fr = pass.transition().transpose() * r;
       if (kept.states) {
         const Vec<N> smoothed = kept.x[k] + kept.P[k] * Fr;
-        by_F += r * smoothed.transpose() - L * pass.F() * kept.P[k];
+        by_F += r * smoothed.transpose() - L * pass.transition() * kept.P[k];
       }
       r = Fr;
-      L = Pass<N>::symmetric(pass.F().transpose() * L * pass.F());
+      L = Pass<N>::symmetric(pass.transition().transpose() * L * pass.transition());
     }
     const auto [u, D] = pass.look_back(kept.traces[k], r, L);
     by_R += u * u - D;
@@ -260,8 +256,8 @@ TuneResiduals residuals(const TuneSystem& system, View<double> series) {
       out.residual[first + k] = u / D;
       out.variance[first + k] = 1.0 / D;
     }
-    r = (pass.F().transpose() * r).eval();
-    L = Pass<N>::symmetric(pass.F().transpose() * L * pass.F());
+    r = (pass.transition().transpose() * r).eval();
+    L = Pass<N>::symmetric(pass.transition().transpose() * L * pass.transition());
   }
   return out;
 }

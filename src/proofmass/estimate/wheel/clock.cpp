@@ -114,6 +114,13 @@ std::vector<double> angle_difference(const WheelMotion& first,
 
 constexpr std::size_t fewest_times = 20;
 
+/// Stamps that both begin at zero look like one clock but need not be: the speeds decide.
+bool are_better_elsewhere(const WheelMotion& first, const WheelMotion& second, double apart) {
+  constexpr double same_speed_radps = 0.3;
+  return apart > same_speed_radps * same_speed_radps &&
+         speed_mismatch(first, second, coarse_offset(first, second)) < 0.25 * apart;
+}
+
 Error nothing_shared() {
   return {Errc::not_observable, "the two recordings share less than a second"};
 }
@@ -130,13 +137,8 @@ Result<ClockFit> fit_phase(const WheelMotion& first, const WheelMotion& second) 
 Result<ClockFit> fit_clocks(const WheelMotion& first,
                             const WheelMotion& second,
                             bool clocks_shared) {
-  // Stamps that both begin at zero look like one clock but need not be: the speeds decide.
-  constexpr double same_speed_radps = 0.3;
   const double apart = speed_mismatch(first, second, 0.0);
-  if (apart > same_speed_radps * same_speed_radps) {
-    const double elsewhere = coarse_offset(first, second);
-    if (speed_mismatch(first, second, elsewhere) < 0.25 * apart) clocks_shared = false;
-  }
+  if (are_better_elsewhere(first, second, apart)) clocks_shared = false;
   double offset_s = clocks_shared ? 0.0 : coarse_offset(first, second);
   Slope slope;
   for (int round = 0; round < 4; ++round) {

@@ -99,7 +99,7 @@ void filter_calibrated(const WheelModel<S>& model,
   auto state = prior_state<S>(prior);
   state.x.mean.template tail<count>() = known.mean;
   state.x.cov.template bottomRightCorner<count, count>() = known.cov;
-  filter(model, 0, model.size(), wheel_gate, state, [&](std::size_t k, const auto& step) {
+  filter(model, {0, model.size()}, wheel_gate, state, [&](std::size_t k, const auto& step) {
     const auto now = model.motion(step.filtered.mean);
     series.filtered_angle_rad[k] = now.angle;
     series.filtered_angle_std_rad[k] =
@@ -210,7 +210,7 @@ WheelFit constants_at_places(const WheelReadings& readings,
   auto state = prior_state<S>(settled.prior);
   LostShare lost(readings.gravity_mps2);
   const auto model = held_model<S>(readings, settled.noise, about);
-  filter(model, 0, model.size(), wheel_gate, state,
+  filter(model, {0, model.size()}, wheel_gate, state,
          [&](std::size_t, const auto& step) { lost.add(step); });
   fit.track.lost = lost.share();
   take_constants(state.x, settled, fit);

@@ -63,13 +63,17 @@ class UsableRows {
   std::size_t next_ = 0;
 };
 
+/// The time of the earliest row that was not taken; infinite after the last.
+double next_time_s(const std::vector<UsableRows>& sensors) {
+  double t = std::numeric_limits<double>::infinity();
+  for (const UsableRows& rows : sensors)
+    if (!rows.ended()) t = std::min(t, rows.time_s());
+  return t;
+}
+
 /// The epochs of one or two sensors on one time line.
 void merge_rows(std::vector<UsableRows> sensors, WheelReadings& readings) {
-  for (;;) {
-    double t = std::numeric_limits<double>::infinity();
-    for (const UsableRows& rows : sensors)
-      if (!rows.ended()) t = std::min(t, rows.time_s());
-    if (std::isinf(t)) return;
+  for (double t = next_time_s(sensors); std::isfinite(t); t = next_time_s(sensors)) {
     WheelEpoch epoch;
     epoch.dt_s = readings.time_s.empty() ? 0.0 : t - readings.time_s.back();
     for (std::size_t s = 0; s < sensors.size(); ++s)

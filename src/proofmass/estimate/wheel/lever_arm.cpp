@@ -187,7 +187,7 @@ FoundPlaces places_by_levers(WheelModel<S> model,
                              const PlacesPrior& belief) {
   auto state = free_places(model, levers, std::move(prior), belief);
   FoundPlaces found;
-  filter(model, 0, model.size(), wheel_gate, state, [&](std::size_t, const auto& step) {
+  filter(model, {0, model.size()}, wheel_gate, state, [&](std::size_t, const auto& step) {
     for (int i = 0; i < step.count; ++i) {
       const auto& update = step.updates[static_cast<std::size_t>(i)];
       const double off = update.innovation / std::sqrt(update.expected);
@@ -215,7 +215,7 @@ Eigen::VectorXd widening(WheelModel<S> model,
   auto standing = model;
   standing.sensors_stand = true;
   auto last = state;
-  filter(standing, 0, model.size(), wheel_gate, last, [](std::size_t, const auto&) {});
+  filter(standing, {0, model.size()}, wheel_gate, last, [](std::size_t, const auto&) {});
   const Standing after = last.x.cov.template bottomRightCorner<count, count>();
   const double block_s = std::max(1.0, (time_s.back() - time_s.front()) / 40.0);
   std::array lengths{ScoreBlocks<S>(block_s), ScoreBlocks<S>(2.0 * block_s),

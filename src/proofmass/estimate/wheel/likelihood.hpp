@@ -145,7 +145,7 @@ double log_likelihood_of(const WheelModel<S>& model,
                          std::size_t first,
                          std::size_t last) {
   double log_likelihood = 0.0;
-  filter(model, first, last, wheel_gate, state, [&](std::size_t, const auto& step) {
+  filter(model, {first, last}, wheel_gate, state, [&](std::size_t, const auto& step) {
     for (int i = 0; i < step.count; ++i) {
       const auto& u = step.updates[static_cast<std::size_t>(i)];
       log_likelihood -=

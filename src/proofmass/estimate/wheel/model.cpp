@@ -54,14 +54,12 @@ std::vector<Mat<wheel::moving>> moving_at(const std::vector<double>& time_s,
 template void advance_in_place(const WheelModel<1>&,
                                std::size_t,
                                const Gate&,
-                               Gaussian<wheel::states(1)>&,
-                               int&,
+                               FilterStateAt<wheel::states(1)>,
                                StepOf<WheelModel<1>>&);
 template void advance_in_place(const WheelModel<2>&,
                                std::size_t,
                                const Gate&,
-                               Gaussian<wheel::states(2)>&,
-                               int&,
+                               FilterStateAt<wheel::states(2)>,
                                StepOf<WheelModel<2>>&);
 template void look_back(BackwardInformation<wheel::states(1)>&, const StepOf<WheelModel<1>>&);
 template void look_back(BackwardInformation<wheel::states(2)>&, const StepOf<WheelModel<2>>&);

@@ -299,34 +299,9 @@ struct WheelModel {
       ripple_rad = now.by_angle.template segment<count>(first).dot(
           (x - at_state).template segment<count>(first));
     }
-    for (int s = 0; s < Sensors; ++s) {
-      const auto index = static_cast<std::size_t>(s);
-      if (!has_readings(index, k)) continue;
-      const PlanarReadings& sensor = *readings[index];
-      const auto at = static_cast<std::size_t>((*epochs)[k].row[index]);
-      const auto first = static_cast<std::size_t>(out.count);
-      const Mat<2> lever =
-          levers == nullptr ? Mat<2>(now.speed * now.speed, now.accel) : (*levers)[k];
-      const double hub_accel = mean_accel == nullptr ? now.accel : (*mean_accel)[k];
-      read_sensor(at_state, now, ripple_rad, lever, hub_accel, s, (*epochs)[k].spread_s2, out);
-      auto& u = out.rows[first];
-      auto& v = out.rows[first + 1];
-      u.value = sensor.u_mps2[at];
-      v.value = sensor.v_mps2[at];
-      u.variance = v.variance = sensor.variance_m2ps4[at];
-      if (!warm_up_mps2.isZero()) {
-        const double share =
-            warmed_up(((*time_s)[k] - time_s->front()) / (time_s->back() - time_s->front()));
-        u.value -= share * warm_up_mps2(2 * s);
-        v.value -= share * warm_up_mps2(2 * s + 1);
-      }
-      if (has_speed(index, k)) {
-        read_gyro(at_state, now, s, at, out);
-        auto& speed = out.rows[first + 2];
-        speed.value = sensor.speed_radps[at];
-        speed.variance = sensor.speed_variance;
-      }
-    }
+    for (int s = 0; s < Sensors; ++s)
+      if (has_readings(static_cast<std::size_t>(s), k))
+        measure_sensor(at_state, {now, ripple_rad}, s, k, out);
     if (has_encoder(k)) read_encoder(at_state, k, out);
     if (about != nullptr)
       for (int i = 0; i < out.count; ++i) {
@@ -425,14 +400,50 @@ struct WheelModel {
 
   /// Gravity is at the angle of `now` plus ripple_rad, less the linear term of this that the
   /// difference of the ripple states adds.
+  struct Rippled {
+    const Motion& now;
+    double ripple_rad;
+  };
+
+  /// The accelerometer and the gyroscope of a sensor that has measurements at epoch k.
+  void measure_sensor(const State& x,
+                      const Rippled& shown,
+                      int s,
+                      std::size_t k,
+                      Readings<states, channels>& out) const {
+    const auto index = static_cast<std::size_t>(s);
+    const PlanarReadings& sensor = *readings[index];
+    const auto at = static_cast<std::size_t>((*epochs)[k].row[index]);
+    const auto first = static_cast<std::size_t>(out.count);
+    read_sensor(x, shown, s, k, out);
+    auto& u = out.rows[first];
+    auto& v = out.rows[first + 1];
+    u.value = sensor.u_mps2[at];
+    v.value = sensor.v_mps2[at];
+    u.variance = v.variance = sensor.variance_m2ps4[at];
+    if (!warm_up_mps2.isZero()) {
+      const double share =
+          warmed_up(((*time_s)[k] - time_s->front()) / (time_s->back() - time_s->front()));
+      u.value -= share * warm_up_mps2(2 * s);
+      v.value -= share * warm_up_mps2(2 * s + 1);
+    }
+    if (!has_speed(index, k)) return;
+    read_gyro(x, shown.now, s, at, out);
+    auto& speed = out.rows[first + 2];
+    speed.value = sensor.speed_radps[at];
+    speed.variance = sensor.speed_variance;
+  }
+
   void read_sensor(const State& x,
-                   const Motion& now,
-                   double ripple_rad,
-                   const Mat<2>& lever,
-                   double hub_accel,
+                   const Rippled& shown_motion,
                    int s,
-                   double spread_s2,
+                   std::size_t k,
                    Readings<states, channels>& out) const {
+    const auto& [now, ripple_rad] = shown_motion;
+    const Mat<2> lever =
+        levers == nullptr ? Mat<2>(now.speed * now.speed, now.accel) : (*levers)[k];
+    const double hub_accel = mean_accel == nullptr ? now.accel : (*mean_accel)[k];
+    const double spread_s2 = (*epochs)[k].spread_s2;
     const int at = wheel::first_of(s);
     const double w = now.speed, al = now.accel, late = w * delay_s;
     const double weaker2 = 1.0 / (1.0 + late * late), weaker = std::sqrt(weaker2);
@@ -503,14 +514,12 @@ struct WheelModel {
 extern template void advance_in_place(const WheelModel<1>&,
                                       std::size_t,
                                       const Gate&,
-                                      Gaussian<wheel::states(1)>&,
-                                      int&,
+                                      FilterStateAt<wheel::states(1)>,
                                       StepOf<WheelModel<1>>&);
 extern template void advance_in_place(const WheelModel<2>&,
                                       std::size_t,
                                       const Gate&,
-                                      Gaussian<wheel::states(2)>&,
-                                      int&,
+                                      FilterStateAt<wheel::states(2)>,
                                       StepOf<WheelModel<2>>&);
 extern template void look_back(BackwardInformation<wheel::states(1)>&,
                                const StepOf<WheelModel<1>>&);

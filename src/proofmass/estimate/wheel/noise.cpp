@@ -264,7 +264,7 @@ void gather_all(const WheelModel<S>& model,
   const auto gather_from = [&](std::size_t first, std::size_t last, GatheredNoise& into) {
     auto part = model;
     auto state = first == 0 ? prior_state<S>(prior) : state_on_path(part, first, prior);
-    filter(part, first, last, wheel_gate, state, [&](std::size_t k, const auto& step) {
+    filter(part, {first, last}, wheel_gate, state, [&](std::size_t k, const auto& step) {
       const auto stretch = static_cast<std::size_t>((readings.time_s[k] - start_s) / length_s);
       gather<S>(readings, k, step, stretch, into);
     });
@@ -332,7 +332,7 @@ Excerpt<S> excerpt_to_tune(const WheelModel<S>& model, const WheelPrior& prior) 
   for (std::size_t first = 0; first < size; first += stride) {
     states.push_back(state);
     double sum = 0.0;
-    filter(model, first, std::min(first + stride, size), wheel_gate, state,
+    filter(model, {first, std::min(first + stride, size)}, wheel_gate, state,
            [&](std::size_t, const auto& s) { sum += std::pow(s.filtered.mean(wheel::accel), 2); });
     change.push_back(sum);
   }

@@ -45,6 +45,17 @@ InstantColumns bare_columns(char separator, std::size_t fields) {
   return columns;
 }
 
+/// The first column of its kind, unless the heading has the unit of another quantity.
+bool enter(const ColumnLabel& label,
+           std::size_t column,
+           Quantity quantity,
+           std::optional<Figures>& into) {
+  const bool has_unit = label.unit.quantity != Quantity::unknown;
+  if (into || (has_unit && label.unit.quantity != quantity)) return false;
+  into = Figures{column, has_unit ? label.unit.to_si : 1.0};
+  return true;
+}
+
 /// nullopt if a heading has an invalid unit.
 std::optional<InstantColumns> named_columns(char separator,
                                             const std::vector<std::string>& fields) {
@@ -53,17 +64,10 @@ std::optional<InstantColumns> named_columns(char separator,
   bool std_has_unit = false;
   for (std::size_t c = 0; c < fields.size(); ++c) {
     const ColumnLabel label = read_label(fields[c]);
-    const bool has_unit = label.unit.quantity != Quantity::unknown;
-    const Figures figures{c, has_unit ? label.unit.to_si : 1.0};
-    const auto enter = [&](std::optional<Figures>& into, Quantity quantity) {
-      if (into || (has_unit && label.unit.quantity != quantity)) return false;
-      into = figures;
-      return true;
-    };
-    if (is_one_of(label.name, time_names)) enter(columns.time, Quantity::time);
-    if (is_one_of(label.name, position_names)) enter(columns.position, Quantity::length);
-    if (is_one_of(label.name, std_names) && enter(columns.std, Quantity::length))
-      std_has_unit = has_unit;
+    if (is_one_of(label.name, time_names)) enter(label, c, Quantity::time, columns.time);
+    if (is_one_of(label.name, position_names)) enter(label, c, Quantity::length, columns.position);
+    if (is_one_of(label.name, std_names) && enter(label, c, Quantity::length, columns.std))
+      std_has_unit = label.unit.quantity != Quantity::unknown;
   }
   if (!columns.time) return std::nullopt;
   if (columns.std && !std_has_unit && columns.position)

@@ -174,6 +174,42 @@ bool come_in_bursts(const StampSteps& out, const std::vector<double>& steps) {
   return !are_multiples(steps, single) && !are_multiples_with_jitter(steps, single);
 }
 
+// Rounded stamps: by the regular steps, or a band where single steps are not conclusive.
+void measure_rounding(View<double> stamps, const std::vector<double>& steps, StampSteps& out) {
+  out.rounding = rounding_of(steps, out.median);
+  if (out.rounding == 0.0) {
+    if (const auto coarse = find_coarse_stamps(stamps, steps, out.median)) {
+      out.rounding = coarse->tick;
+      out.coarse = coarse->step;
+      out.band = coarse->band;
+    }
+  }
+  Moments near;
+  for (const double step : steps)
+    if (std::abs(step - out.median) <= 1.001 * out.rounding) near.add(step);
+  out.mean_near = near.count > 0 ? near.mean : out.median;
+  out.single = out.rounding > 0.0 ? out.mean_near : ordinary_median(steps, out.median);
+}
+
+void measure_bursts(View<double> stamps, StampSteps& out) {
+  out.band = band_of_bursts(stamps, out.long_run);
+  if (!(out.band > 0.0)) return;
+  // Twice, since with a step some per cent off rows may seem to be missing.
+  for (int pass = 0; pass < 2; ++pass) out.long_run = step_by_line(stamps, out.long_run, out.band);
+  if (const auto whole = line_without_holes(stamps, out.long_run, out.band)) {
+    out.long_run = whole->step;
+    out.band = whole->band;
+  }
+}
+
+void refine_single(View<double> stamps, const std::vector<double>& steps, StampSteps& out) {
+  // The median of rounded intervals is one of a few ticks.
+  const bool is_rounded = out.rounding > 0.0;
+  const double usual = is_rounded ? ordinary_mean(steps, out.median, out.rounding) : out.single;
+  const double line = step_by_jittered_line(stamps, steps, usual, is_rounded);
+  if (line > 0.0) out.single = line;
+}
+
 }  // namespace
 
 StampSteps measure_steps(View<double> stamps) {
@@ -191,38 +227,13 @@ StampSteps measure_steps(View<double> stamps) {
   std::ranges::copy_if(all, std::back_inserter(up), [](double step) { return step > 0.0; });
   if (up.empty()) return out;
   out.median = *median(up);
-  out.rounding = rounding_of(up, out.median);
-  if (out.rounding == 0.0)
-    if (const auto coarse = find_coarse_stamps(stamps, up, out.median)) {
-      out.rounding = coarse->tick;
-      out.coarse = coarse->step;
-      out.band = coarse->band;
-    }
-  Moments near;
-  for (const double step : up)
-    if (std::abs(step - out.median) <= 1.001 * out.rounding) near.add(step);
-  out.mean_near = near.count > 0 ? near.mean : out.median;
-  out.single = out.rounding > 0.0 ? out.mean_near : ordinary_median(up, out.median);
+  measure_rounding(stamps, up, out);
   out.long_run = long_run_of(stamps, all);
   out.in_bursts = out.coarse == 0.0 && come_in_bursts(out, all);
-  if (out.in_bursts) {
-    out.band = band_of_bursts(stamps, out.long_run);
-    if (out.band > 0.0) {
-      // Twice, since with a step some per cent off rows may seem to be missing.
-      for (int pass = 0; pass < 2; ++pass)
-        out.long_run = step_by_line(stamps, out.long_run, out.band);
-      if (const auto whole = line_without_holes(stamps, out.long_run, out.band)) {
-        out.long_run = whole->step;
-        out.band = whole->band;
-      }
-    }
-  } else if (out.coarse == 0.0) {
-    // The median of rounded intervals is one of a few ticks.
-    const bool is_rounded = out.rounding > 0.0;
-    const double usual = is_rounded ? ordinary_mean(up, out.median, out.rounding) : out.single;
-    if (const double line = step_by_jittered_line(stamps, up, usual, is_rounded); line > 0.0)
-      out.single = line;
-  }
+  if (out.in_bursts)
+    measure_bursts(stamps, out);
+  else if (out.coarse == 0.0)
+    refine_single(stamps, up, out);
   return out;
 }
 
