@@ -123,7 +123,8 @@ Recording edges_recording(const Recording& recording,
                           double& begin_s) {
   InputFlags own;
   own.host = input.host;
-  Recording edges = load_rising(flags.edges, own, {});
+  // Edges are not evenly spaced.
+  Recording edges = with_rising_time(load(flags.edges, own, {}));
   if (recording.time.start_ns && edges.time.start_ns)
     begin_s = 1e-9 * static_cast<double>(*edges.time.start_ns - *recording.time.start_ns);
   return edges;

@@ -146,11 +146,14 @@ Recording load(const std::string& file, const InputFlags& flags, const Progress&
 }
 
 Recording load_even(const std::string& file, const InputFlags& flags, const Progress& progress) {
-  return signal::with_even_stamps(load(file, flags, progress));
+  return signal::without_late_stamps(signal::with_even_stamps(load(file, flags, progress)));
 }
 
 Recording load_rising(const std::string& file, const InputFlags& flags, const Progress& progress) {
-  const Recording whole = load_even(file, flags, progress);
+  return with_rising_time(load_even(file, flags, progress));
+}
+
+Recording with_rising_time(const Recording& whole) {
   Recording rising = with_rising_stamps(whole);
   const std::size_t lost = whole.samples() - rising.samples();
   if (lost > 0)

@@ -17,10 +17,14 @@
 namespace proofmass::app {
 
 /// Like load(), with even times where the stamps do not show single intervals
-/// (signal::with_even_stamps()): for estimates of motion.
+/// (signal::with_even_stamps()) or a computer was busy (signal::without_late_stamps()): for
+/// estimates of motion.
 [[nodiscard]] Recording load_even(const std::string& file,
                                   const InputFlags& flags,
                                   const Progress& progress);
+
+/// Without the samples whose time does not increase (reported in a note).
+[[nodiscard]] Recording with_rising_time(const Recording& whole);
 
 /// Like load_even(), without samples whose time does not increase (reported in a note).
 [[nodiscard]] Recording load_rising(const std::string& file,

@@ -45,7 +45,7 @@ TEST(LagGain, IsWhatTheFixedLagSmoothersCovarianceFallsBy) {
   FixedLag<3> window(30);
   FilterState<3> state = wide<3>();
   const auto series = even_series(oscillator, 2000);
-  filter(series, 0, 2000, {}, state, [&](std::size_t, const auto& step) { window.push(step); });
+  filter(series, {0, 2000}, {}, state, [&](std::size_t, const auto& step) { window.push(step); });
   for (std::size_t lag = 0; lag <= 30; ++lag) {
     const Mat<3> fallen = window.state(0).cov.diagonal() - window.state(lag).cov.diagonal();
     EXPECT_LT((Mat<3>(gain.variance_reduction(lag)) - fallen).cwiseAbs().maxCoeff(), 1e-13) << lag;

@@ -1,11 +1,13 @@
 #include "proofmass/estimate/wheel.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/estimate/unmeasured.hpp"
 #include "proofmass/estimate/wheel/baseline_methods.hpp"
 #include "proofmass/estimate/wheel/findings.hpp"
 #include "proofmass/estimate/wheel/joint_fit.hpp"
@@ -13,6 +15,27 @@
 
 namespace proofmass::estimate {
 namespace {
+
+// Without a gyroscope's rates or an encoder, which counts on, the wheel may have turned any number
+// of times in a long gap.
+Status check_gaps(const std::vector<WheelSensor>& sensors, const WheelOptions& options) {
+  constexpr double longest_s = 60.0;
+  if (options.encoder) return Done{};
+  std::optional<UnmeasuredInterval> gap;
+  for (const WheelSensor& sensor : sensors) {
+    gap = unmeasured_interval(sensor.time_s, sensor.accel_mps2[0], longest_s);
+    if (gap && !sensor.rate_radps[0].empty())
+      gap = unmeasured_interval(sensor.time_s, sensor.rate_radps[0], longest_s);
+    if (!gap) return Done{};
+  }
+  std::array<char, 200> words{};
+  std::snprintf(
+      words.data(), words.size(),
+      "no measurements from %.1f to %.1f s: the wheel may have turned any number of times "
+      "in this gap, or the clock was set; analyse the parts before and after it",
+      gap->from_s, gap->to_s);
+  return Error{Errc::not_observable, words.data(), {Advice{"from"}, Advice{"to"}}};
+}
 
 Status check(const std::vector<WheelSensor>& sensors, const WheelOptions& options) {
   for (const WheelSensor& sensor : sensors)
@@ -26,7 +49,8 @@ Status check(const std::vector<WheelSensor>& sensors, const WheelOptions& option
           (!axis.empty() && axis.size() != sensor.time_s.size()))
         return Error{Errc::invalid_argument,
                      sensor.name + ": the gyroscope's channels are of other lengths"};
-  return check_wheel(sensors.size(), options);
+  if (Status valid = check_wheel(sensors.size(), options); !valid) return valid;
+  return check_gaps(sensors, options);
 }
 
 /// Path along the circle in radians: every reversal counts, the noise at rest does not. A turning

@@ -165,8 +165,8 @@ struct WheelSolution {
 /// two sensors is freed as soon as they are merged: move long ones.
 ///
 /// Errors: invalid_argument (no sensor, unequal lengths, an axis of length 0, non-ascending time),
-/// too_few_samples, not_observable (no spin axis can be found, or gravity does not rotate with the
-/// encoder's angle).
+/// too_few_samples, not_observable (no spin axis can be found, gravity does not rotate with the
+/// encoder's angle, or without an encoder no sensor has measurements for more than a minute).
 [[nodiscard]] Result<WheelSolution> estimate_wheel(std::vector<WheelSensor> sensors,
                                                    const WheelOptions& options);
 

@@ -58,6 +58,17 @@ TEST(EstimateWheel, AGapInWhichATurnMayHideHasNoTurns) {
   }));
 }
 
+TEST(EstimateWheel, AClockThatWasSetIsNamed) {
+  WheelSensor sensor = record(lively, {}, 60.0, 9);
+  for (std::size_t k = 200; k < sensor.time_s.size(); ++k) sensor.time_s[k] += 100.0;
+  const auto solution = estimate_wheel({sensor}, {});
+  ASSERT_FALSE(solution.has_value());
+  EXPECT_EQ(solution.error().code, Errc::not_observable);
+  EXPECT_TRUE(solution.error().message.find("no measurements from 3.3 to 103.3 s") !=
+              std::string::npos)
+      << solution.error().message;
+}
+
 // As a saturated accelerometer leaves out a part of each turn. Between the two sides of a gap the
 // speed changes by more than jerk between samples.
 TEST(EstimateWheel, WithAGyroscopeGapsAreBridgedAsWithout) {

@@ -50,4 +50,10 @@ struct EvenGrid {
 /// counted; any other recording unchanged. The median stamp keeps its time on the file's clock.
 [[nodiscard]] Recording with_even_stamps(Recording recording);
 
+/// Where the computer stalled and stamped the rows of that time late, all at once, the same
+/// recording with these rows evenly between the one before and the first that is on time again,
+/// missing samples counted. Only for regular stamps: half of the intervals are within a fourth of
+/// the period. A note says how many rows; any other recording is unchanged.
+[[nodiscard]] Recording without_late_stamps(Recording recording);
+
 }  // namespace proofmass::signal

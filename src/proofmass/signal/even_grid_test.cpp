@@ -169,5 +169,46 @@ TEST(EvenStamps, OfSingleIntervalsAreThemselves) {
   EXPECT_TRUE(same.notes.empty());
 }
 
+// The computer was busy for 0.8 s, then stamped the rows of that time at once; another row is late
+// by itself, and three are missing.
+TEST(LateStamps, AreSpreadOverTheStall) {
+  Recording recording;
+  std::vector<double> stamps_s, true_s;
+  for (int k = 0; k < 2000; ++k) {
+    if (k >= 1500 && k < 1503) continue;
+    true_s.push_back(0.01 * k);
+    const bool is_late = k >= 700 && k < 780;
+    stamps_s.push_back(is_late ? 7.79 + 1e-4 * (k - 780) : 0.01 * k + (k == 300 ? 0.004 : 0.0));
+  }
+  recording.time = stamped(stamps_s, 100.0);
+  recording.channels.push_back({"acc_x", *parse_unit("m/s^2"), ramp(stamps_s.size())});
+  const Recording mended = without_late_stamps(recording);
+  for (std::size_t k = 0; k < true_s.size(); ++k)
+    EXPECT_NEAR(mended.time.stamps_s[k], k == 300 ? stamps_s[k] : true_s[k], 1e-3) << k;
+  ASSERT_EQ(mended.notes.size(), 1U);
+  EXPECT_NE(mended.notes.front().text.find("rows were stamped late, by up to 0.78"),
+            std::string::npos)
+      << mended.notes.front().text;
+}
+
+TEST(LateStamps, AreNotThoseOfGapsAndIrregularRows) {
+  Recording recording;
+  std::vector<double> stamps_s;
+  for (int k = 0; k < 1000; ++k) stamps_s.push_back(0.01 * (k < 400 ? k : k + 90));
+  recording.time = stamped(stamps_s, 100.0);
+  recording.channels.push_back({"acc_x", *parse_unit("m/s^2"), ramp(1000)});
+  EXPECT_EQ(without_late_stamps(recording).time.stamps_s, stamps_s);
+  // Edges of a wheel that stops and goes on faster.
+  double t = 0.0;
+  for (std::size_t k = 0; k < 1000; ++k) {
+    stamps_s[k] = t;
+    t += k == 300             ? 1.0
+         : k > 300 && k < 700 ? 0.004
+                              : 0.01 + 0.008 * std::sin(0.05 * static_cast<double>(k));
+  }
+  recording.time = stamped(stamps_s, 100.0);
+  EXPECT_EQ(without_late_stamps(recording).time.stamps_s, stamps_s);
+}
+
 }  // namespace
 }  // namespace proofmass::signal::even_grid_test

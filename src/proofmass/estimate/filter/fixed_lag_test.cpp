@@ -67,7 +67,7 @@ TEST(FixedLag, ThatHoldsAStatesFirstEntriesHasThemOfTheWholeOne) {
   FixedLag<3> whole(6);
   FixedLag<3, 2> first(6);
   FilterState<3> state{test::oscillator_prior()};
-  filter(test::uneven_series(50), 0, 50, Gate{}, state, [&](std::size_t k, const auto& step) {
+  filter(test::uneven_series(50), {0, 50}, Gate{}, state, [&](std::size_t k, const auto& step) {
     whole.push(step);
     first.push(step);
     const std::size_t ago = std::min<std::size_t>(k, 6);

@@ -5,6 +5,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "proofmass/estimate/unmeasured.hpp"
+
 namespace proofmass::estimate {
 namespace {
 
@@ -176,18 +178,13 @@ Error hidden_motion() {
 
 std::optional<Error> unbridgeable_gap(const TrackSignal& signal) {
   constexpr double longest_s = 60.0;
-  double last_s = signal.time_s.front();
-  for (std::size_t k = 0; k < signal.time_s.size(); ++k) {
-    if (std::isnan(signal.accel_mps2.front()[k])) continue;
-    if (signal.time_s[k] - last_s > longest_s)
-      return Error{Errc::not_observable,
-                   text("no measurements from %.1f to %.1f s: the displacement in this gap may be "
-                        "any, or the clock was set; analyse the parts before and after it",
-                        last_s, signal.time_s[k]),
-                   {Advice{"from"}, Advice{"to"}}};
-    last_s = signal.time_s[k];
-  }
-  return std::nullopt;
+  const auto gap = unmeasured_interval(signal.time_s, signal.accel_mps2.front(), longest_s);
+  if (!gap) return std::nullopt;
+  return Error{Errc::not_observable,
+               text("no measurements from %.1f to %.1f s: the displacement in this gap may be "
+                    "any, or the clock was set; analyse the parts before and after it",
+                    gap->from_s, gap->to_s),
+               {Advice{"from"}, Advice{"to"}}};
 }
 
 double scale_std(const TrackSignal& signal,
