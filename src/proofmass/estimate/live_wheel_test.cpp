@@ -281,6 +281,23 @@ TEST(LiveWheel, RepeatedRowsOfAStuckLoggerAreNoMeasurements) {
   EXPECT_GT(share_held(one, drive, "speed"), 0.93);
 }
 
+// A computer that is busy for 1.2 s stamps the rows of that time at once; the rows do not depend on
+// how they are cut into blocks.
+TEST(LiveWheel, RowsThatWereStampedLateCostNoTurn) {
+  const Drive drive = swinging();
+  Stream stream = one_sensor(drive);
+  for (const std::size_t from : {1000U, 1800U})
+    for (std::size_t k = from; k < from + 120; ++k)
+      stream.stamps_s[k] = stream.stamps_s[from + 120] - 1e-4 * static_cast<double>(from + 120 - k);
+  const Followed one = follow(stream, options_for(1));
+  EXPECT_TRUE(one.fed.says("were stamped late"));
+  EXPECT_FALSE(one.fed.says("turns may be lost"));
+  EXPECT_GT(share_held(one, drive, "angle"), 0.93);
+  EXPECT_LT(largest(one, drive, "angle"), 4.0);
+  const Followed cut = follow(stream, options_for(1), 7);
+  EXPECT_EQ(one["angle"], cut["angle"]);
+}
+
 TEST(LiveWheel, RepeatedRowsOfASensorWithoutNoiseAtRestAreMeasurements) {
   const Drive drive{{0.3, 5.0}, {{8.0, 5.0}, {2.0, 0.0}, {10.0, 0.0}}};
   Stream stream = one_sensor(drive);

@@ -228,6 +228,12 @@ std::vector<Note> LiveEpochs::take_notes() {
                                 " measurements excluded from the estimate, the last at " +
                                 at_second(said.last_s) + " s: " + said.why});
   }
+  if (const std::size_t late = late_.take_count(); late > 0)
+    notes_.push_back({Severity::warning,
+                      std::to_string(late) +
+                          " samples were stamped late, as by a computer that was "
+                          "busy, before " +
+                          at_second(last_time_s_) + " s: they are taken to be evenly spaced"});
   if (const Rejected said = std::exchange(backwards_, {}); said.count > 0)
     notes_.push_back({Severity::warning, std::to_string(said.count) +
                                              " samples left out of the estimate: their time does "

@@ -11,6 +11,7 @@
 #include "proofmass/core/recording.hpp"
 #include "proofmass/core/result.hpp"
 #include "proofmass/estimate/filter/gaussian.hpp"
+#include "proofmass/estimate/wheel/live_late_rows.hpp"
 
 // From blocks of samples to the epochs of an online filter.
 namespace proofmass::estimate {
@@ -39,7 +40,8 @@ struct LiveClock {
 
 /// Screens samples, and averages them so that there are at most `most_rate_hz` epochs a second: at
 /// that rate and below every sample is an epoch, available immediately. A mean ends where samples
-/// are missing. The result does not depend on the block size.
+/// are missing. Rows that a busy computer stamped late wait until one is on time again
+/// (LiveLateRows). The result does not depend on the block size.
 class LiveEpochs {
  public:
   LiveEpochs(std::vector<LiveVector> vectors, const LiveClock& clock);
@@ -49,13 +51,17 @@ class LiveEpochs {
   template <class Visit>
   [[nodiscard]] Status add(const Block& samples, Visit&& visit) {
     if (auto status = check(samples); !status) return status;
-    for (std::size_t row = 0; row < samples.rows(); ++row)
+    for (std::size_t row = 0; row < samples.rows(); ++row) {
+      if (late_.holds(samples, row, last_time_s_, clock_.rate_hz)) continue;
+      take_late(visit);
       if (take(samples, row)) visit(static_cast<const LiveEpoch&>(epoch_));
+    }
     return Done{};
   }
   /// The last mean, with fewer samples than the others.
   template <class Visit>
   void finish(Visit&& visit) {
+    take_late(visit);
     if (close()) visit(static_cast<const LiveEpoch&>(epoch_));
   }
 
@@ -111,6 +117,13 @@ class LiveEpochs {
   };
 
   [[nodiscard]] Status check(const Block& samples) const;
+  template <class Visit>
+  void take_late(Visit&& visit) {
+    if (late_.empty()) return;
+    const Block late = late_.take();
+    for (std::size_t row = 0; row < late.rows(); ++row)
+      if (take(late, row)) visit(static_cast<const LiveEpoch&>(epoch_));
+  }
   [[nodiscard]] bool take(const Block& samples, std::size_t row);
   [[nodiscard]] bool follows(double time_s);
   void learn_rate(double time_s);
@@ -122,6 +135,7 @@ class LiveEpochs {
 
   std::vector<LiveVector> vectors_;
   LiveClock clock_;
+  LiveLateRows late_;
   std::size_t each_ = 1;       ///< samples in a mean
   std::size_t rows_seen_ = 0;  ///< while the rate is being estimated
   double first_time_s_ = 0.0;
