@@ -109,6 +109,9 @@ Field timing(const TimingAudit& timing) {
        field::long_records("gaps", timing.gaps, gap_fields),
        field::count("gap_count", timing.gap_count,
                     {.meaning = "all gaps; of more than a million the first are listed"}),
+       field::count("stalls", timing.stalls,
+                    {.meaning = "intervals of more than three steps in which no sample is missing: "
+                                "those that follow were stamped late"}),
        field::count("backwards", timing.backwards, {.meaning = "stamps earlier than the last"}),
        field::count("repeated", timing.repeated, {.meaning = "stamps equal to the last"}),
        field::count("mended", timing.mended, {.meaning = "stamps that the reader replaced"}),

@@ -66,11 +66,14 @@ struct TimingAudit {
   /// Samples, including missing ones, over the duration; rate_hz itself where the two differ by
   /// more than 2 % or time runs backwards. None without stamps.
   std::optional<double> long_run_hz;
-  std::optional<double> jitter_s;   ///< std of the intervals about the nominal period, gaps
-                                    ///< excluded; none without stamps
-  std::vector<Gap> gaps;            ///< the first most_listed gaps
-  std::size_t gap_count = 0;        ///< all gaps
-  Gap longest_gap;                  ///< the first of the longest; duration 0 if there is none
+  std::optional<double> jitter_s;  ///< std of the intervals about the nominal period, gaps
+                                   ///< excluded; none without stamps
+  std::vector<Gap> gaps;           ///< the first most_listed gaps
+  std::size_t gap_count = 0;       ///< all gaps
+  Gap longest_gap;                 ///< the first of the longest; duration 0 if there is none
+  std::size_t stalls = 0;          ///< intervals of more than three periods without a missing
+                                   ///< sample: the samples after it were stamped late
+  double longest_stall_s = 0.0, longest_stall_start_s = 0.0;
   std::size_t backwards = 0;        ///< stamps below the previous one, corrected ones included
   std::size_t repeated = 0;         ///< stamps equal to the previous one
   std::size_t mended = 0;           ///< stamps that the reader replaced: not a number, or far off

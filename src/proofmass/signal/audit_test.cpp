@@ -359,6 +359,18 @@ TEST(Timing, FindsGapsRepeatsAndStepsBack) {
   EXPECT_TRUE(found.is_bad()) << "time ran backwards, and nobody mended it";
 }
 
+TEST(Timing, APauseInWhichNoSampleIsMissingIsNoGap) {
+  std::vector<double> stamps_s;
+  for (int k = 0; k < 1000; ++k)
+    stamps_s.push_back(k >= 400 && k < 450 ? 4.49 + 1e-4 * (k - 449) : 0.01 * k);
+  const RecordingAudit found = audit(stamped(stamps_s, 100.0));
+  EXPECT_TRUE(found.timing.gaps.empty());
+  EXPECT_EQ(found.timing.stalls, 1U);
+  EXPECT_NEAR(found.timing.longest_stall_s, 0.5, 0.02);
+  EXPECT_NEAR(found.timing.longest_stall_start_s, 3.99, 1e-9);
+  EXPECT_NE(notes_of(found).find("stamped late"), std::string::npos) << notes_of(found);
+}
+
 TEST(Timing, CountsTheStampsThatAReaderMended) {
   Recording recording = stamped({0.0, 0.1, 0.2, 0.3}, 10.0);
   recording.time.mended = 2;

@@ -110,6 +110,13 @@ void note_timing(const TimingAudit& timing, std::vector<Note>& notes) {
                      fmt::format("{} in the stamps, the longest {:.4g} s from {:.6g} s on",
                                  counted(timing.gap_count, "gap"), timing.longest_gap.duration_s,
                                  timing.longest_gap.start_s)});
+  if (timing.stalls > 0)
+    notes.push_back(
+        {Severity::warning,
+         fmt::format("{} in which no sample is missing, the longest {:.4g} s from {:.6g} s on: the "
+                     "samples that follow were stamped late, as by a computer that was busy",
+                     counted(timing.stalls, "pause") + " in the stamps", timing.longest_stall_s,
+                     timing.longest_stall_start_s)});
   if (timing.backwards > 0)
     notes.push_back({timing.backwards > timing.mended ? Severity::bad : Severity::warning,
                      fmt::format("time runs backwards at {}", counted(timing.backwards, "stamp"))});

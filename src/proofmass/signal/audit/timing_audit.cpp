@@ -49,11 +49,23 @@ void RunningTiming::take_numbers() {
     if (hole != fresh_.end() && hole->before == numbered_) {
       next_number_ += static_cast<double>(hole++->missing);
       unbroken_ = 0;
+    } else if (numbered_ > 0 && band_s_ == 0.0) {
+      note_stall(recent_[numbered_ - 1 - first], recent_[numbered_ - first]);
     }
     line_.add(next_number_, recent_[numbered_ - first]);
     next_number_ += 1.0;
     longest_unbroken_ = std::max(longest_unbroken_, ++unbroken_);
   }
+}
+
+void RunningTiming::note_stall(double before_s, double stamp_s) {
+  constexpr double longest_step = 3.0;
+  const double interval_s = stamp_s - before_s;
+  if (!(interval_s * rate_hz_ > longest_step)) return;
+  ++found_.stalls;
+  if (interval_s <= found_.longest_stall_s) return;
+  found_.longest_stall_s = interval_s;
+  found_.longest_stall_start_s = before_s;
 }
 
 // The rate of the fitted line where single intervals show what is missing, it is that of the first

@@ -33,6 +33,7 @@ class RunningTiming {
   void add_gap(const Gap& gap);
   void take_holes();
   void take_numbers();
+  void note_stall(double before_s, double stamp_s);
   void take_rate(TimingAudit& out) const;
 
   double rate_hz_;

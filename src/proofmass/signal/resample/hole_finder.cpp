@@ -137,9 +137,8 @@ double HoleFinder::median_lateness(std::size_t from, std::size_t end, std::size_
 // - By the interval, if it is a whole number of periods to within a fourth; otherwise by the
 //   medians of up to `nearby` stamps on either side, relative to an even grid, up to the next long
 //   interval: these average out the jitter of the two stamps.
-// - Then at most as many as by the median of all `nearby` later stamps: where more are missing,
-// they
-//   are later still.
+// - Then at most as many as by the median of all `nearby` later stamps, which are later still where
+//   more are missing.
 // - At most as many as are missing in all of `nearby` stamps on either side: after late stamps
 //   others follow early.
 double HoleFinder::missing_before(std::size_t at) {
