@@ -398,7 +398,7 @@ Result<Fit> fit_without_outliers(const std::vector<TuneSeries>& series,
     if (readings.drop_outliers(fit.problem()) == 0) return fit;
     if (readings.largest_share() < most_share) continue;
     readings = TuneReadings(series);
-    round = most_rounds - 1;
+    round = most_rounds - 1;  // the next is the last
   }
 }
 

@@ -296,18 +296,35 @@ TEST(TimeBase, TakesNoLossForRounding) {
 }
 
 TEST(TimeBase, DoesNotLetLostRowsMoveTheRateOfStampsThatJitter) {
+  for (const auto& [jitter_std, lost] : {std::pair{0.08, 0.2}, {0.12, 0.06}}) {
+    for (unsigned seed = 0; seed < 5; ++seed) {
+      std::mt19937_64 random(seed);
+      std::uniform_real_distribution<double> uniform;
+      std::normal_distribution<double> jitter(0.0, jitter_std);
+      std::vector<std::string> stamps;
+      for (int k = 0; k < 6000; ++k)
+        if (const double at = k + jitter(random); uniform(random) >= lost)
+          stamps.push_back(fmt::format("{:.6f}", 1.0 + at / 100.0));
+      const auto read = read_text(table("t_s", stamps));
+      ASSERT_TRUE(read.has_value());
+      EXPECT_NEAR(read->time.rate_hz, 100.0, 0.1) << seed;
+      EXPECT_NEAR(signal::audit(*read).timing.long_run_hz.value(), 100.0, 0.1) << seed;
+    }
+  }
+}
+
+// Steps of 4 to 15 ms: neither their median nor the mean of those next to it is the period.
+TEST(TimeBase, FindsTheRateOfStampsInWholeMillisecondsThatJitter) {
   for (unsigned seed = 0; seed < 5; ++seed) {
     std::mt19937_64 random(seed);
-    std::uniform_real_distribution<double> uniform;
-    std::normal_distribution<double> jitter(0.0, 0.08);
+    std::normal_distribution<double> jitter(0.0, 0.12);
     std::vector<std::string> stamps;
-    for (int k = 0; k < 6000; ++k)
-      if (const double at = k + jitter(random); uniform(random) >= 0.2)
-        stamps.push_back(fmt::format("{:.6f}", 1.0 + at / 100.0));
+    for (int k = 0; k < 3000; ++k)
+      stamps.push_back(fmt::format("{:.3f}", 1.0 + (k + jitter(random)) / 104.3));
     const auto read = read_text(table("t_s", stamps));
     ASSERT_TRUE(read.has_value());
-    EXPECT_NEAR(read->time.rate_hz, 100.0, 0.1) << seed;
-    EXPECT_NEAR(signal::audit(*read).timing.long_run_hz.value(), 100.0, 0.1) << seed;
+    EXPECT_NEAR(read->time.rate_hz, 104.3, 0.05) << seed;
+    EXPECT_EQ(signal::audit(*read).timing.gap_count, 0U) << seed;
   }
 }
 

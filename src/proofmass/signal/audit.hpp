@@ -70,7 +70,7 @@ struct TimingAudit {
                                    ///< excluded; none without stamps
   std::vector<Gap> gaps;           ///< the first most_listed gaps
   std::size_t gap_count = 0;       ///< all gaps
-  Gap longest_gap;                 ///< the first of the longest; duration 0 if there is none
+  Gap longest_gap;                 ///< the earliest if several are as long; duration 0 if none
   std::size_t stalls = 0;          ///< intervals of more than three periods without a missing
                                    ///< sample: the samples after it were stamped late
   double longest_stall_s = 0.0, longest_stall_start_s = 0.0;

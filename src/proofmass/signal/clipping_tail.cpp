@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "proofmass/signal/audit/chunk_statistics.hpp"
+#include "proofmass/signal/audit/extreme_levels.hpp"
 
 namespace proofmass::signal {
 namespace {
@@ -12,26 +13,6 @@ namespace {
 std::size_t count_beside(View<double> values, double extreme, double width) {
   return static_cast<std::size_t>(std::ranges::count_if(
       values, [&](double x) { return x != extreme && std::abs(x - extreme) <= width; }));
-}
-
-constexpr std::size_t neighbours = 8;
-
-struct Neighbours {
-  std::size_t levels = 0;         // at most eight
-  std::size_t most_frequent = 0;  // how often one of them occurs
-};
-
-// Of the lowest value, which the first of them is.
-Neighbours neighbours_of_lowest(std::vector<double> values) {
-  std::ranges::sort(values);
-  Neighbours out;
-  for (std::size_t from = 0, end = 0; from < values.size() && out.levels < neighbours; from = end) {
-    while (end < values.size() && values[end] == values[from]) ++end;
-    if (from == 0) continue;
-    ++out.levels;
-    out.most_frequent = std::max(out.most_frequent, end - from);
-  }
-  return out;
 }
 
 }  // namespace
@@ -88,13 +69,13 @@ double ClippingTail::beside(double width, const Subsample& sample) const {
 }
 
 double ClippingTail::most_frequent_beside(const Subsample& sample) const {
-  const Neighbours exact = neighbours_of_lowest(kept_);
+  constexpr std::size_t all_beside = 8;
+  const ExtremeLevels exact = levels_at_lowest(kept_);
   const bool is_all = std::isinf(below_);
-  if (exact.levels == neighbours || is_all) return static_cast<double>(exact.most_frequent);
+  if (exact.beside == all_beside || is_all) return static_cast<double>(exact.most_frequent);
   std::vector<double> values(sample.values().begin(), sample.values().end());
   for (double& value : values) value *= sign_;
-  return static_cast<double>(neighbours_of_lowest(std::move(values)).most_frequent) *
-         sample.share();
+  return static_cast<double>(levels_at_lowest(std::move(values)).most_frequent) * sample.share();
 }
 
 }  // namespace proofmass::signal

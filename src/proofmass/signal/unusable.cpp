@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "proofmass/core/statistics.hpp"
+#include "proofmass/signal/audit/extreme_levels.hpp"
 #include "proofmass/signal/audit/running_channel.hpp"
 #include "proofmass/signal/audit/stuck_values.hpp"
 #include "proofmass/signal/channel_audit.hpp"
@@ -99,32 +100,12 @@ bool stand_out(View<double> series, const std::vector<Run>& runs, double low, do
   return 2 * at_ends < series.size() && 2 * in_long > in_runs;
 }
 
-struct Levels {
-  std::size_t at_end = 0,
-              most = 0;  // values at the end, and at the most frequent of its neighbours
-  double step = 0.0;     // usual distance of the neighbours
-};
-
 // The end of the range of values and the eight levels nearest to it.
-Levels levels_at(View<double> series, double end) {
-  constexpr std::size_t neighbours = 8;
+ExtremeLevels levels_at(View<double> series, double end) {
   std::vector<double> off;
   for (const double value : series)
     if (is_plausible(value)) off.push_back(std::abs(value - end));
-  std::ranges::sort(off);
-  Levels out;
-  std::vector<double> steps;
-  for (std::size_t from = 0, to = 0; from < off.size() && steps.size() < neighbours; from = to) {
-    while (to < off.size() && off[to] == off[from]) ++to;
-    if (from == 0) {
-      out.at_end = to;
-      continue;
-    }
-    out.most = std::max(out.most, to - from);
-    steps.push_back(off[from] - off[from - 1]);
-  }
-  if (!steps.empty()) out.step = std::ranges::min(steps);
-  return out;
+  return levels_at_lowest(std::move(off));
 }
 
 // Whether noise of two quantisation steps or more leaves the lowest or highest value eight times as
@@ -145,8 +126,8 @@ bool piles_up(View<double> series, double end, const std::vector<View<double>>& 
     if (std::ranges::any_of(others, [k](View<double> o) { return o[k] != o[k - 1]; })) ++alone;
   }
   if (stays < fewest || 2 * alone < stays) return false;
-  const Levels levels = levels_at(series, end);
-  return levels.at_end >= times_as_often * levels.most &&
+  const ExtremeLevels levels = levels_at(series, end);
+  return levels.at_extreme >= times_as_often * levels.most_frequent &&
          median(std::move(changes)).value_or(0.0) >= steps * levels.step && levels.step > 0.0;
 }
 

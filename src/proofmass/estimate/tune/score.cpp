@@ -85,12 +85,13 @@ class Pass {
     return true;
   }
 
-  struct Error {
+  // Of a measurement: u and its variance D.
+  struct SmoothingError {
     double u, D;
   };
 
   // Adjoint: λ, Λ of the state after step k become those before its measurement.
-  Error look_back(const Trace<N>& trace, Vec<N>& r, Square<N>& L) const {
+  SmoothingError look_back(const Trace<N>& trace, Vec<N>& r, Square<N>& L) const {
     const Vec<N> LK = L * trace.gain;
     const double u = trace.weighted - trace.gain.dot(r);
     const double D = trace.weight + trace.gain.dot(LK);
