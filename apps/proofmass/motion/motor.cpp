@@ -12,6 +12,7 @@
 #include "input/gyroscope.hpp"
 #include "input/input.hpp"
 #include "proofmass/report/motor/report.hpp"
+#include "proofmass/signal/unusable.hpp"
 #include "verb.hpp"
 
 namespace proofmass::app {
@@ -108,9 +109,21 @@ void add_accelerometers(const MotorCommand& command,
   }
 }
 
+// Makes NaN what shows no voltage or current: a channel that was stuck, or at an end of its range.
+void drop_unusable_drive(const Channel* voltage, const Channel* current, Recording& recording) {
+  std::vector<std::vector<std::size_t>> channels;
+  for (const Channel* channel : {voltage, current})
+    if (channel != nullptr)
+      channels.push_back({static_cast<std::size_t>(channel - recording.channels.data())});
+  const auto keep = [&](const std::vector<Note>& found) {
+    recording.notes.insert(recording.notes.end(), found.begin(), found.end());
+  };
+  keep(signal::drop_stuck(channels, recording));
+  for (const auto& channel : channels) keep(signal::drop_saturated(channel, recording));
+}
+
 estimate::MotorRecord prepare(const MotorCommand& command, std::vector<Note>& notes) {
   Recording recording = load_rising(command.file, command.input, progress_bar(command.output));
-  notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());
   if (recording.time.source == TimeSource::none)
     throw Failure(usage,
                   command.file + ": no time column and no --rate: give --rate HZ or --time NAME");
@@ -122,13 +135,15 @@ estimate::MotorRecord prepare(const MotorCommand& command, std::vector<Note>& no
   if (voltage == nullptr)
     throw Failure(
         usage, command.file + ": no column named voltage: name the motor's with --voltage COLUMN");
+  const Channel* current =
+      command.no_current ? nullptr
+                         : column_of(recording, command.current, "current", "--current");
+  drop_unusable_drive(voltage, current, recording);
+  notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());
   record.voltage_v = si_values(*voltage, Quantity::voltage, *parse_unit("V"));
-  if (!command.no_current)
-    if (const Channel* current = column_of(recording, command.current, "current", "--current")) {
-      record.current_a = current->values.copy();
-      if (command.current_unit == "mA")
-        for (double& value : record.current_a) value *= 1e-3;
-    }
+  if (current != nullptr) record.current_a = current->values.copy();
+  if (command.current_unit == "mA")
+    for (double& value : record.current_a) value *= 1e-3;
   if (command.angle.empty()) {
     add_accelerometers(command, recording, notes, record);
   } else {

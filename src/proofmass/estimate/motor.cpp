@@ -66,22 +66,25 @@ const MotorParameter* MotorSolution::find(std::string_view name) const {
 }
 
 Result<MotorSolution> estimate_motor(const MotorRecord& record, const MotorOptions& options) {
-  const Result<Series> prepared = motor::prepare(record, options);
+  Result<Series> prepared = motor::prepare(record, options);
   if (!prepared) return prepared.error();
-  const Series& series = *prepared;
+  Series series = std::move(prepared).value();
   const Motion load = motor::motion_of_load(series);
   const auto rows = [](const Motion& motion) {
     return motion.contact.size() -
            static_cast<std::size_t>(std::ranges::count(motion.contact, std::int8_t{0}));
   };
   if (rows(load) < least_rows) return too_still();
+  if (series.has_current()) motor::subtract_current_offset(load, series);
   Motion motion = load;
   std::optional<ElectricalFit> electrical;
-  double per_constant = series.has_current() ? motor::resistance_per_constant(series, motion) : 0.0;
+  motor::ElectricalStart start;
+  if (series.has_current())
+    start.resistance_per_constant = motor::resistance_per_constant(series, motion);
   for (int round = 0; series.has_current() && round < rounds; ++round) {
     if (options.progress) options.progress("identification", static_cast<double>(round) / rounds);
-    electrical = motor::fit_electrical(series, motion, per_constant);
-    per_constant = std::max(electrical->value(motor::resistance), 0.0);
+    electrical = motor::fit_electrical(series, motion, start);
+    start = electrical->next;
     MotorSpeed speed = speed_by_back_emf(series, *electrical);
     const double gap_rad =
         2.0 *

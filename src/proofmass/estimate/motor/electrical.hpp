@@ -11,7 +11,15 @@ enum Electrical : Eigen::Index {
   resistance,
   inductance,
   brush_drop,
+  brush_knee,  ///< ln of the current within which the brushes' drop changes its sign
+  offset,      ///< constant error of the voltage, less R times that of the current
   electrical_count
+};
+
+/// Where the fit starts: coefficients about which it is linear, or depend on which its priors do.
+struct ElectricalStart {
+  double resistance_per_constant = 0.0;
+  double brush_drop_per_constant = 0.0, brush_knee_a = 0.0;
 };
 
 /// The winding and the gear: from u = R i + L i' + Vb sgn i + K ω the motor's angle is
@@ -34,15 +42,15 @@ struct ElectricalFit {
   double correlation = 0.0;
   /// The motor's speed is Σ value · terms; one column for each coefficient, a row for each sample.
   Eigen::MatrixXd speed_terms;
+  ElectricalStart next{};
   std::vector<double> motor_angle_rad{};
   std::vector<double> load_angle_rad{};  ///< by the back-EMF alone, without the random walk
 };
 
-/// `resistance_per_constant`: R/K for the prior of the inductance, about. Expects a current, and
-/// some samples with contact.
+/// Expects a current, and some samples with contact.
 [[nodiscard]] ElectricalFit fit_electrical(const Series& series,
                                            const Motion& motion,
-                                           double resistance_per_constant);
+                                           const ElectricalStart& start);
 
 /// R/K by u = R i + K ω at each sample.
 [[nodiscard]] double resistance_per_constant(const Series& series, const Motion& motion);

@@ -146,8 +146,8 @@ struct Curve {
 // The Stribeck speed of the highest likelihood, on a logarithmic grid refined by a parabola;
 // without an excess if that is not three standard deviations above zero.
 Curve find_curve(const Equation& equation, const Rows& rows, const Motion& motion, double ratio) {
-  constexpr int points = 25;
-  const double low = std::log(0.7 * motion.rest_radps), high = std::log(0.25 * motion.top_radps());
+  constexpr int points = 29;
+  const double low = std::log(0.7 * motion.rest_radps), high = std::log(0.5 * motion.top_radps());
   if (!(high > low)) return {};
   const double step = (high - low) / (points - 1);
   std::vector<double> costs;

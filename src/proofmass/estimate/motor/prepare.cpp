@@ -140,6 +140,7 @@ Result<Series> prepare(const MotorRecord& record, const MotorOptions& options) {
   // A regression takes its columns as exact: noise of the current would attenuate resistance and
   // inductance, in whose place torque constant and backlash would come.
   constexpr double smooth_s = 0.05;
+  series.sampled_current_a = series.current_a;
   if (series.has_current()) series.current_a = smoothed(series.current_a, series.step_s, smooth_s);
   turn_with_voltage(series);
   return series;

@@ -141,6 +141,25 @@ Motion motion_of_load(const Series& series) {
   return motion;
 }
 
+void subtract_current_offset(const Motion& load, Series& series) {
+  constexpr double least_s = 0.5, no_voltage_share = 0.01, settled_s = 0.1;
+  double top_v = 0.0;
+  for (const double u : series.voltage_v) top_v = std::max(top_v, std::abs(u));
+  std::vector<double> at_rest;
+  double since_s = 0.0;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const bool idle = std::abs(load.speed_radps[k]) < load.rest_radps && !series.bridged[k] &&
+                      std::abs(series.voltage_v[k]) < no_voltage_share * top_v;
+    since_s = idle ? since_s + series.step_s : 0.0;
+    if (since_s > settled_s) at_rest.push_back(series.sampled_current_a[k]);
+  }
+  if (static_cast<double>(at_rest.size()) * series.step_s < least_s) return;
+  const double offset = median(at_rest).value_or(0.0);
+  for (double& i : series.current_a) i -= offset;
+  for (double& i : series.sampled_current_a) i -= offset;
+  series.current_offset_a = offset;
+}
+
 Motion motion_of_motor(const Series& series,
                        const std::vector<double>& motor_rad,
                        std::vector<double> load_rad,

@@ -11,6 +11,8 @@ struct Series {
   double step_s = 0.0;
   std::vector<double> voltage_v;
   std::vector<double> current_a;  ///< smoothed() over 50 ms; empty: not measured
+  std::vector<double> sampled_current_a{};
+  double current_offset_a = 0.0;  ///< subtracted from both
   std::vector<double> angle_rad;  ///< of the load, unwrapped, positive with the voltage
   /// Whether a sample is interpolated over a gap of the recording, of unknown motion.
   std::vector<bool> bridged;
@@ -69,6 +71,10 @@ void shorten_runs(std::vector<std::int8_t>& contact, std::size_t margin);
 
 /// Motion from the load's angle alone.
 [[nodiscard]] Motion motion_of_load(const Series& series);
+
+/// Subtracts what the current's channel shows where the load rests and there is no voltage, if it
+/// does for half a second in all.
+void subtract_current_offset(const Motion& load, Series& series);
 
 /// Motion of the motor, `load_rad` the load's angle. The gear bears on a flank from settle_s after
 /// the motor has crossed the gap until the motor is at rest: the play operator of angle and gap (M.
