@@ -44,6 +44,26 @@ class Motor(CommandTest):
         self.assertEqual(heading, ["time (s)", "load_angle (rad)", "motor_angle (rad)", "speed (rad/s)", "friction (N*m)", "contact"])
         self.assertIn("Friction against speed", (self.folder / "motor.html").read_text())
 
+    def test_rows_of_a_stuck_logger_and_of_a_clipped_current_do_not_count(self):
+        with open(self.folder / "drive.csv", newline="") as file:
+            heading, *rows = csv.reader(file)
+        at = heading.index("current (A)")
+        limit = sorted(abs(float(row[at])) for row in rows)[int(0.97 * len(rows))]
+        for row in rows:
+            row[at] = f"{min(max(float(row[at]), -limit), limit):.6g}"
+        for first in (1500, 4200, 6100):
+            for row in rows[first + 1 : first + 250]:
+                row[1:] = rows[first][1:]
+        self.write("worn.csv", "\n".join(",".join(row) for row in [heading, *rows]) + "\n")
+        document = self.document("motor", "worn.csv")
+        figures = {one["name"]: one for one in document["parameters"]}
+        for name in ("torque_constant", "inertia", "coulomb_friction", "backlash"):
+            found = figures[name]
+            self.assertAlmostEqual(found["value"], self.truth[name], delta=4 * found["std"], msg=name)
+        warnings = " ".join(document["warnings"])
+        self.assertIn("current (A): 2", warnings)
+        self.assertIn("repeat one value in 747", warnings)
+
     def test_a_wrong_column_is_named(self):
         self.assertIn("no column 'u'", self.expect_failure(USAGE, "motor", "drive.csv", "--voltage", "u"))
         self.write("other.csv", "time (s),x (m/s^2),y (m/s^2)\n" + "".join(f"{0.01 * k},0,9.8\n" for k in range(500)))

@@ -110,16 +110,21 @@ void add_accelerometers(const MotorCommand& command,
 }
 
 // Makes NaN what shows no voltage or current: a channel that was stuck, or at an end of its range.
-void drop_unusable_drive(const Channel* voltage, const Channel* current, Recording& recording) {
-  std::vector<std::vector<std::size_t>> channels;
-  for (const Channel* channel : {voltage, current})
-    if (channel != nullptr)
-      channels.push_back({static_cast<std::size_t>(channel - recording.channels.data())});
-  const auto keep = [&](const std::vector<Note>& found) {
+// A controller may hold the voltage at its own limit while the current changes; only the current,
+// then, has a witness.
+void drop_unusable_drive(const Channel& voltage, const Channel* current, Recording& recording) {
+  const auto index = [&recording](const Channel& channel) {
+    return static_cast<std::size_t>(&channel - recording.channels.data());
+  };
+  const auto keep = [&recording](const std::vector<Note>& found) {
     recording.notes.insert(recording.notes.end(), found.begin(), found.end());
   };
+  std::vector<std::vector<std::size_t>> channels{{index(voltage)}};
+  if (current != nullptr) channels.push_back({index(*current)});
   keep(signal::drop_stuck(channels, recording));
-  for (const auto& channel : channels) keep(signal::drop_saturated(channel, recording));
+  keep(signal::drop_saturated(channels.front(), recording));
+  if (current != nullptr)
+    keep(signal::drop_saturated(channels.back(), recording, channels.front()));
 }
 
 estimate::MotorRecord prepare(const MotorCommand& command, std::vector<Note>& notes) {
@@ -136,9 +141,8 @@ estimate::MotorRecord prepare(const MotorCommand& command, std::vector<Note>& no
     throw Failure(
         usage, command.file + ": no column named voltage: name the motor's with --voltage COLUMN");
   const Channel* current =
-      command.no_current ? nullptr
-                         : column_of(recording, command.current, "current", "--current");
-  drop_unusable_drive(voltage, current, recording);
+      command.no_current ? nullptr : column_of(recording, command.current, "current", "--current");
+  drop_unusable_drive(*voltage, current, recording);
   notes.insert(notes.end(), recording.notes.begin(), recording.notes.end());
   record.voltage_v = si_values(*voltage, Quantity::voltage, *parse_unit("V"));
   if (current != nullptr) record.current_a = current->values.copy();

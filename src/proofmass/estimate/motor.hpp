@@ -58,8 +58,8 @@ struct MotorSeries {
 };
 
 struct MotorSolution {
-  std::vector<MotorParameter> parameters;
-  std::vector<FrictionPoint> friction;  ///< N m, without a current V; over the speeds recorded
+  std::vector<MotorParameter> parameters{};
+  std::vector<FrictionPoint> friction{};  ///< N m, without a current V; over the speeds recorded
   bool has_current = false;
   double rate_hz = 0.0;          ///< at which it was analysed
   double angle_noise_rad = 0.0;  ///< standard deviation of one sample of the angle
@@ -69,7 +69,7 @@ struct MotorSolution {
   /// of motion: 0 if the noise is as modelled.
   std::optional<double> angle_correlation{};
   double motion_correlation = 0.0;
-  MotorSeries series;
+  MotorSeries series{};
   std::vector<Note> notes;
 
   /// nullptr if there is no parameter of that name.

@@ -50,19 +50,29 @@ struct Count {
   double largest = 0.0;  // error, in standard deviations
 };
 
-enum class Recorded { current, no_current, encoder };
+enum class Recorded { current, no_current, encoder, noisy_current };
 
 std::map<std::string, Count> coverage(int runs, Recorded recorded) {
   std::map<std::string, Count> counts;
   for (int run = 1; run <= runs; ++run) {
     const auto seed = static_cast<std::uint64_t>(run);
-    const TrueDrive drive = drawn(seed);
+    TrueDrive drive = drawn(seed);
     motor_test::TrueMeasurement how;
-    if (recorded == Recorded::encoder) {
+    if (recorded == Recorded::noisy_current) {
+      std::mt19937_64 engine(2000 + seed);
+      std::uniform_real_distribution<double> share;
+      drive.brush_drop = share(engine);
+      drive.brush_knee = std::exp(std::log(0.003) + std::log(10.0) * share(engine));
+      how.current_noise = 0.01;
+      how.current_offset = 0.06 * share(engine) - 0.03;
+    }
+    if (recorded == Recorded::encoder || recorded == Recorded::noisy_current) {
       how.sensors = 0;
       how.encoder_counts = 4096.0;
     }
-    MotorRecord record = motor_test::simulated(drive, how, motor_test::exploring, seed);
+    MotorRecord record = motor_test::simulated(
+        drive, how,
+        recorded == Recorded::noisy_current ? motor_test::with_rests : motor_test::exploring, seed);
     if (recorded == Recorded::no_current) record.current_a.clear();
     const MotorSolution found = estimate_motor(record).value();
     const auto truth = truth_of(drive);
@@ -98,6 +108,11 @@ TEST(MotorSlow, IntervalsHoldTheTruthWithACurrent) {
 
 TEST(MotorSlow, IntervalsHoldTheTruthWithoutACurrent) {
   expect_true_intervals("without current", Recorded::no_current);
+}
+
+// Brushes whose drop rises over 3 to 30 mA, noise of 10 mA, and an offset of the current.
+TEST(MotorSlow, IntervalsHoldTheTruthWithANoisyCurrent) {
+  expect_true_intervals("noisy current", Recorded::noisy_current);
 }
 
 TEST(MotorSlow, IntervalsHoldTheTruthWithAnEncoder) {

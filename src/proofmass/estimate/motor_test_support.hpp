@@ -19,7 +19,7 @@ namespace proofmass::estimate::motor_test {
 /// In coordinates of the load's shaft.
 struct TrueDrive {
   double resistance = 13.0, inductance = 0.06, torque_constant = 22.6;
-  double brush_drop = 0.0;  ///< V
+  double brush_drop = 0.0, brush_knee = 0.005;  ///< V; current within which its sign changes, A
   double motor_inertia = 0.6, load_inertia = 0.012;
   double viscous = 0.8;
   double coulomb = 3.0, stribeck = 1.0, stribeck_speed = 0.08;
@@ -38,6 +38,7 @@ struct TrueMeasurement {
   double rate_hz = 200.0, duration_s = 40.0;
   double voltage_noise = 0.02, current_noise = 0.002, accel_noise = 0.0184;
   double voltage_step = 0.0122, current_step = 5e-4;
+  double current_offset = 0.0;
   double ripple_v = 1.0, ripple_hz = 937.0;
   double bias = 0.3, scale = 0.005, radius = 0.1, bandwidth_hz = 100.0;
   int sensors = 2;
@@ -69,7 +70,7 @@ class Bodies {
 
   void step(double u, double h) {
     const double di = (u - d_.resistance * current - d_.torque_constant * motor_speed -
-                       d_.brush_drop * std::tanh(current / 0.005)) /
+                       d_.brush_drop * std::tanh(current / d_.brush_knee)) /
                       d_.inductance;
     const double gear = contact();
     const double cogging = d_.cogging * std::sin(24.0 * 58.0 * motor_angle);
@@ -163,7 +164,8 @@ inline MotorRecord simulated(const TrueDrive& drive,
     const double seen = voltage(t + h) + 0.1 * (u - voltage(t));
     out.voltage_v.push_back(stepped(seen + how.voltage_noise * normal(engine), how.voltage_step));
     out.current_a.push_back(
-        stepped(bodies.current + how.current_noise * normal(engine), how.current_step));
+        stepped(bodies.current + how.current_offset + how.current_noise * normal(engine),
+                how.current_step));
     if (how.encoder_counts > 0.0) {
       const double count_rad = 2.0 * std::numbers::pi / how.encoder_counts;
       out.angle_rad.push_back(count_rad * std::floor(bodies.load_angle / count_rad));

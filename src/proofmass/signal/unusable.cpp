@@ -204,10 +204,12 @@ struct Saturated {
 };
 
 std::vector<Saturated> saturated(const std::vector<std::size_t>& channels,
-                                 const Recording& recording) {
+                                 const Recording& recording,
+                                 const std::vector<std::size_t>& witnesses = {}) {
   std::vector<Saturated> out;
   for (const std::size_t c : channels) {
     std::vector<View<double>> others;
+    for (const std::size_t other : witnesses) others.emplace_back(recording.channels[other].values);
     for (const std::size_t other : channels)
       if (other != c) others.emplace_back(recording.channels[other].values);
     const Channel& channel = recording.channels[c];
@@ -232,8 +234,10 @@ Note note_on(const Saturated& found, const Channel& channel, const Recording& re
 
 }  // namespace
 
-std::vector<Note> drop_saturated(const std::vector<std::size_t>& channels, Recording& recording) {
-  const std::vector<Saturated> found = saturated(channels, recording);
+std::vector<Note> drop_saturated(const std::vector<std::size_t>& channels,
+                                 Recording& recording,
+                                 const std::vector<std::size_t>& witnesses) {
+  const std::vector<Saturated> found = saturated(channels, recording, witnesses);
   std::vector<Note> notes;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (found[i].samples.empty()) continue;

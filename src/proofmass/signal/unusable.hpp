@@ -42,8 +42,11 @@ struct RangeEnds {
 
 /// Makes the values of these channels, axes of sensors on one rigid body, at an end of their range
 /// NaN, since the true ones may lie anywhere beyond it. Returns a warning for each channel that has
-/// any, with their number, the ends and the first time.
-std::vector<Note> drop_saturated(const std::vector<std::size_t>& channels, Recording& recording);
+/// any, with their number, the ends and the first time. `witnesses`: channels of other quantities
+/// that change when these do.
+std::vector<Note> drop_saturated(const std::vector<std::size_t>& channels,
+                                 Recording& recording,
+                                 const std::vector<std::size_t>& witnesses = {});
 
 /// As drop_saturated(), for what counts at rest: with half a second before and after, since the
 /// mean of noise that is cut off at one side is biased; and only channels that are at an end for

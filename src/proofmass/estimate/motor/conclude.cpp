@@ -27,9 +27,9 @@ constexpr double channel_gain_std = 5e-4;
 constexpr double curve_std = 0.015;
 
 const char* const no_current =
-    "no current was recorded: only ratios to the torque constant and the resistance show";
+    "no current is used: only ratios to the torque constant and the resistance show";
 const char* const no_motor_angle =
-    "no current was recorded, without which the motor's angle in the gap of the gear is not known";
+    "no current is used, without which the motor's angle in the gap of the gear is not known";
 const char* const no_reversal =
     "the gear bore on one flank throughout: the recording needs a reversal of the load";
 const char* const one_speed =
@@ -93,38 +93,41 @@ MotorParameter friction(const Words& words, const Uncertain& found, double scale
 
 }  // namespace
 
-Findings::Findings(const Series& series,
-                   const Motion& motion,
-                   const std::optional<ElectricalFit>& electrical,
-                   const MechanicalFit& mechanical)
+Findings::Findings(const Identified& found, const CurrentErrors& errors)
     : value_(VectorXd::Zero(in_joint(mechanical_count))),
       covariance_(MatrixXd::Zero(value_.size(), value_.size())),
-      has_current_(electrical.has_value()),
-      has_both_flanks_(motion.has_both_flanks()),
-      shows_stribeck_(mechanical.shows_stribeck),
-      top_radps_(motion.top_radps()),
-      rest_radps_(motion.rest_radps),
+      has_current_(found.electrical.has_value()),
+      has_both_flanks_(found.motion.has_both_flanks()),
+      shows_stribeck_(found.mechanical.shows_stribeck),
+      top_radps_(found.motion.top_radps()),
+      rest_radps_(found.motion.rest_radps),
       top_effort_(0.0) {
-  for (const double v : has_current_ ? series.current_a : series.voltage_v)
+  for (const double v : has_current_ ? found.series.current_a : found.series.voltage_v)
     top_effort_ = std::max(top_effort_, std::abs(v));
+  const MechanicalFit& mechanical = found.mechanical;
   value_.tail(mechanical_count) = mechanical.value;
   covariance_.bottomRightCorner(mechanical_count, mechanical_count) = mechanical.covariance;
   covariance_(of_stribeck_speed, of_stribeck_speed) += curve_std * curve_std;
-  if (!electrical) {
+  if (!has_current_) {
     covariance_(of_drive, of_drive) += square(channel_gain_std * value_(of_drive));
     return;
   }
-  value_.head(electrical_count) = electrical->value;
-  MatrixXd of_electrical = electrical->covariance;
-  of_electrical.diagonal() += (channel_gain_std * electrical->value).cwiseAbs2();
+  const ElectricalFit& electrical = *found.electrical;
+  value_.head(electrical_count) = electrical.value;
+  MatrixXd of_electrical = electrical.covariance;
+  of_electrical.diagonal() += (channel_gain_std * electrical.value).cwiseAbs2();
   const MatrixXd& by = mechanical.by_electrical;
   const MatrixXd cross = by * of_electrical;
   covariance_.topLeftCorner(electrical_count, electrical_count) = of_electrical;
   covariance_.bottomLeftCorner(mechanical_count, electrical_count) = cross;
   covariance_.topRightCorner(electrical_count, mechanical_count) = cross.transpose();
   covariance_.bottomRightCorner(mechanical_count, mechanical_count) += cross * by.transpose();
-  half_backlash_rad_ = electrical->half_backlash_rad;
-  half_backlash_std_rad_ = electrical->half_backlash_std_rad;
+  value_ += errors.shift.head(value_.size());
+  covariance_ += errors.covariance.topLeftCorner(value_.size(), value_.size());
+  constexpr Index of_backlash = joint_count - 1;
+  half_backlash_rad_ = electrical.half_backlash_rad + errors.shift(of_backlash);
+  half_backlash_std_rad_ = std::hypot(electrical.half_backlash_std_rad,
+                                      std::sqrt(errors.covariance(of_backlash, of_backlash)));
 }
 
 template <class Function>

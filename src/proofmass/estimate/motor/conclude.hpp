@@ -1,7 +1,7 @@
 #pragma once
 
 #include "proofmass/estimate/motor.hpp"
-#include "proofmass/estimate/motor/mechanical.hpp"
+#include "proofmass/estimate/motor/current_errors.hpp"
 
 namespace proofmass::estimate::motor {
 
@@ -9,11 +9,7 @@ namespace proofmass::estimate::motor {
 /// uncertainty is judged.
 class Findings {
  public:
-  /// electrical: nullopt without a current.
-  Findings(const Series& series,
-           const Motion& motion,
-           const std::optional<ElectricalFit>& electrical,
-           const MechanicalFit& mechanical);
+  Findings(const Identified& found, const CurrentErrors& errors);
 
   /// The drive's figures with intervals, and what the recording does not determine.
   [[nodiscard]] std::vector<MotorParameter> parameters() const;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "proofmass/core/statistics.hpp"
@@ -25,8 +26,8 @@ double largest(const std::vector<double>& values) {
   return out;
 }
 
-// Brushes drop their voltage with the sign of the current, smoothly through zero: Vb tanh(i/s), with
-// its derivative by ln s. The current is not smoothed first, which would not be linear.
+// Brushes drop their voltage with the sign of the current, smoothly through zero: Vb tanh(i/s),
+// with its derivative by ln s. The current is not smoothed first, which would not be linear.
 struct BrushTerms {
   std::vector<double> drop, by_knee;
 };
@@ -174,11 +175,14 @@ ElectricalStart with_likely_knee(const Series& series,
                                  const ElectricalStart& start) {
   constexpr std::array shares = {0.005, 0.01, 0.02, 0.04, 0.08, 0.16};
   ElectricalStart out = start;
+  std::optional<double> ratio;  // of the noise: the first fit's
   double least = std::numeric_limits<double>::infinity();
   for (const double share : shares) {
     ElectricalStart tried = start;
     tried.brush_knee_a = share * largest(series.sampled_current_a);
-    const LevelFit found = fit(Problem(series, motion, tried).regression);
+    const Problem problem(series, motion, tried);
+    if (!ratio) ratio = fit(problem.regression).ratio;
+    const LevelFit found = fit_at(problem.regression, *ratio);
     tried.brush_drop_per_constant = found.value(brush_drop);
     if (found.cost < least) out = tried;
     least = std::min(least, found.cost);

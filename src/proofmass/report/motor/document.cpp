@@ -71,10 +71,10 @@ Fields point_fields(const FrictionPoint& point) {
 
 // Correlation of each innovation with the next.
 Fields correlation_fields(const MotorSolution& solution) {
-  return {field::number(
-              "winding", solution.angle_correlation,
-              {.meaning = "0 if the noise is as modelled", .why_null = "no current was recorded"}),
-          field::number("motion", solution.motion_correlation)};
+  return {
+      field::number("winding", solution.angle_correlation,
+                    {.meaning = "0 if the noise is as modelled", .why_null = "no current is used"}),
+      field::number("motion", solution.motion_correlation)};
 }
 
 Fields motor_fields(const MotorReport& report) {
