@@ -91,7 +91,7 @@ TEST(Motor, AnOffsetOfTheCurrentDoesNotMatter) {
 TEST(Motor, NoiseOfTheCurrentIsAccountedFor) {
   const TrueDrive drive;
   double least_z = 0.0, most_z = 0.0;
-  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     const MotorSolution found =
         estimate_motor(
             simulated(drive, {.current_noise = 0.02, .encoder_counts = 4096.0}, exploring, seed))

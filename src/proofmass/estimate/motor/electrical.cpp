@@ -247,18 +247,21 @@ ElectricalFit fit_electrical(const Series& series,
                              const ElectricalStart& start) {
   ElectricalStart at = start;
   if (!(at.brush_knee_a > 0.0)) at = with_likely_knee(series, motion, at);
-  // Newton's steps for the knee, on which the voltage depends nonlinearly.
+  // Newton's steps for the knee, on which the voltage depends nonlinearly; the noise by the first.
   constexpr int most_steps = 6;
   constexpr double longest_step = 0.5, close = 0.02;  // of ln s
-  for (int step = 0;; ++step) {
+  std::optional<double> ratio;
+  for (int step = 0; step < most_steps; ++step) {
     const Problem problem(series, motion, at);
-    const LevelFit found = fit(problem.regression);
+    if (!ratio) ratio = fit(problem.regression).ratio;
+    const LevelFit found = fit_at(problem.regression, *ratio);
     const double change = std::clamp(found.value(brush_knee), -longest_step, longest_step);
-    if (step == most_steps || std::abs(change) < close)
-      return concluded(series, motion, problem, found, at);
+    if (std::abs(change) < close) break;
     at.brush_drop_per_constant = found.value(brush_drop);
     at.brush_knee_a *= std::exp(change);
   }
+  const Problem problem(series, motion, at);
+  return concluded(series, motion, problem, fit(problem.regression), at);
 }
 
 }  // namespace proofmass::estimate::motor
