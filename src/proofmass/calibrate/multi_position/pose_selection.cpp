@@ -109,17 +109,12 @@ bool Choice::explained(const PoseSet& out) {
 // linear model. A fit without each one of some fifty would take a minute.
 std::vector<PoseSet> Choice::with_one_back(const PoseSet& out) {
   constexpr std::size_t most = 6;
-  const PoseShifts shifts = hypotheses_.shifts(*hypotheses_.without(out));
+  const std::vector<double> gains = hypotheses_.shifts(*hypotheses_.without(out)).gains(out);
   std::vector<std::pair<double, PoseSet>> by_gain;
   for (std::size_t member = 0; member < out.size(); ++member) {
     PoseSet others = out;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(member));
-    double gain = 0.0;
-    if (shifts.rss_without(others)) {
-      const auto shift = shifts.without(others).shift_of(out[member]);
-      if (shift && shift->cofactor > 0.0) gain = shift->value * shift->value / shift->cofactor;
-    }
-    by_gain.emplace_back(std::isnan(gain) ? 0.0 : gain, std::move(others));
+    by_gain.emplace_back(std::isfinite(gains[member]) ? gains[member] : 0.0, std::move(others));
   }
   std::ranges::sort(by_gain);
   by_gain.resize(std::min(by_gain.size(), most));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "proofmass/calibrate/multi_position/ellipsoid_start.hpp"
+#include "proofmass/calibrate/multi_position/pose_shifts.hpp"
 #include "proofmass/calibrate/multi_position_test_support.hpp"
 
 namespace proofmass::calibrate::pose_selection_test {
@@ -119,6 +120,25 @@ TEST(PoseSelection, StudentisesByTheFitToTheOthers) {
     const NormFit fit = fit_norm({.poses = others}, used, NormParameters::nine, all.fit.p).value();
     const double expected = studentised_by(fit, fit.rss / static_cast<double>(fit.dof()), poses[k]);
     EXPECT_NEAR(all.studentised[k].value(), expected, 0.01 * std::abs(expected) + 1e-3) << k;
+  }
+}
+
+// What one pose of a set explains beside the others of it is what the sum loses with it.
+TEST(PoseShifts, GainsAreDifferencesOfSums) {
+  const std::vector<NormalisedPose> poses = normalised(Drawn(6, {.count = 24}, 3.0 * mg).poses);
+  const NormData data{.poses = poses};
+  const std::vector<bool> used(poses.size(), true);
+  const NormFit fit =
+      fit_norm(data, used, NormParameters::nine, ellipsoid_start(poses, true)).value();
+  const PoseShifts shifts(data, fit.terms, NormParameters::nine);
+  const PoseSet out{2, 6, 7, 15, 20};
+  const std::vector<double> gains = shifts.gains(out);
+  ASSERT_EQ(gains.size(), out.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    PoseSet others = out;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    const double lost = *shifts.rss_without(others) - *shifts.rss_without(out);
+    EXPECT_NEAR(gains[k], lost, 1e-6 * (lost + 1e-3 * *shifts.rss_without({}))) << k;
   }
 }
 

@@ -46,6 +46,23 @@ std::optional<PoseShifts::Shift> PoseShifts::shift_of(std::size_t k) const {
   return Shift{g(k) / own, 1.0 / own};
 }
 
+std::vector<double> PoseShifts::gains(const PoseSet& out) const {
+  const auto n = static_cast<Eigen::Index>(out.size());
+  Eigen::MatrixXd Q(n, n);
+  Eigen::VectorXd g(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::size_t k = out[static_cast<std::size_t>(i)];
+    g(i) = g_(static_cast<Eigen::Index>(k));
+    for (Eigen::Index j = 0; j <= i; ++j)
+      Q(i, j) = Q(j, i) = q(k, out[static_cast<std::size_t>(j)]);
+  }
+  const Eigen::MatrixXd cofactor = positive_inverse(Q);
+  const Eigen::VectorXd error = cofactor * g;
+  std::vector<double> gains;
+  for (Eigen::Index i = 0; i < n; ++i) gains.push_back(error(i) * error(i) / cofactor(i, i));
+  return gains;
+}
+
 std::optional<double> PoseShifts::rss_without(const PoseSet& out) const {
   if (out.empty()) return rss_;
   const std::size_t k = out.front();

@@ -40,6 +40,10 @@ class PoseShifts {
   };
   [[nodiscard]] std::optional<Shift> shift_of(std::size_t k) const;
 
+  /// By how much the error of each of these poses lowers the smallest sum of squares, beside the
+  /// errors of the others of them: e_k² / (Q_SS⁻¹)_kk with e = Q_SS⁻¹ g.
+  [[nodiscard]] std::vector<double> gains(const PoseSet& out) const;
+
   [[nodiscard]] std::size_t poses() const { return static_cast<std::size_t>(g_.size()); }
 
  private:
