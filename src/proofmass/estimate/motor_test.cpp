@@ -1,5 +1,6 @@
 #include "proofmass/estimate/motor.hpp"
 
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -136,6 +137,23 @@ TEST(Motor, ACoarseCurrentIsNotUsed) {
   expect_absent(found, "resistance");
   ASSERT_FALSE(found.notes.empty());
   EXPECT_NE(found.notes[0].text.find("too coarse"), std::string::npos) << found.notes[0].text;
+}
+
+// A voltage in steps, at which the load overruns the motor: while it brakes the flank is not known.
+// Torque constants were up to 34 standard deviations off.
+TEST(Motor, ALoadThatOverrunsTheMotorDoesNotCount) {
+  const TrueDrive drive{
+      .motor_inertia = 0.3, .load_inertia = 0.3, .coulomb = 1.0, .load_coulomb = 2.0};
+  const Voltage steps = [](double t) {
+    constexpr std::array levels{20.0, 0.0, -20.0, 10.0, 20.0, -10.0, 0.0, -20.0};
+    return levels[static_cast<std::size_t>(t / 0.8) % levels.size()];
+  };
+  for (const std::uint64_t seed : {1U, 2U}) {
+    const MotorSolution found =
+        estimate_motor(simulated(drive, {.encoder_counts = 4096.0}, steps, seed)).value();
+    expect_found(found, "torque_constant", drive.torque_constant, 0.05);
+    expect_found(found, "backlash", drive.backlash, 0.3);
+  }
 }
 
 // Up to a quarter of the top speed only, the Coulomb friction took the remainder of the fall.

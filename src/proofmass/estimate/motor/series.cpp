@@ -9,10 +9,11 @@
 namespace proofmass::estimate::motor {
 namespace {
 
-constexpr double window_s = 0.12;     // of the cubic through the load's angle
-constexpr double settle_s = 0.05;     // after the load has begun to move, until the flank bears
-constexpr double least_share = 0.02;  // friction is known above this share of the top speed,
-constexpr double noise_factor = 4.0;  // and above this many standard deviations
+constexpr double window_s = 0.12;       // of the cubic through the load's angle
+constexpr double settle_s = 0.05;       // after the load has begun to move, until the flank bears
+constexpr double least_share = 0.02;    // friction is known above this share of the top speed,
+constexpr double braking_share = 0.03;  // of the largest current
+constexpr double noise_factor = 4.0;    // and above this many standard deviations
 
 // Σ j² and the other even moments over −h … h.
 struct Moments246 {
@@ -45,6 +46,25 @@ double slope_at(const std::vector<double>& y, std::size_t k, std::size_t half) {
 
 std::size_t samples_in(double duration_s, double step_s) {
   return static_cast<std::size_t>(std::ceil(duration_s / step_s));
+}
+
+// Where the voltage steps: the windows over which current and speed are smoothed mix what is before
+// with what is behind. None if that is most of the recording, as by the pulses of a switched
+// supply.
+std::vector<bool> steps_of_voltage(const Series& series) {
+  constexpr double step_share = 0.1, over_s = 0.02, around_s = 0.05, most = 0.5;
+  double top_v = 0.0;
+  for (const double u : series.voltage_v) top_v = std::max(top_v, std::abs(u));
+  const std::size_t n = series.size(), over = samples_in(over_s, series.step_s),
+                    around = samples_in(around_s, series.step_s);
+  std::vector<bool> out(n, false);
+  for (std::size_t k = over; k < n; ++k)
+    if (std::abs(series.voltage_v[k] - series.voltage_v[k - over]) > step_share * top_v)
+      std::fill(out.begin() + static_cast<std::ptrdiff_t>(k - std::min(k, over + around)),
+                out.begin() + static_cast<std::ptrdiff_t>(std::min(n, k + around + 1)), true);
+  const auto count = static_cast<double>(std::ranges::count(out, true));
+  if (count > most * static_cast<double>(n)) out.assign(n, false);
+  return out;
 }
 
 std::int8_t direction(double speed_radps, double least_radps) {
@@ -172,16 +192,26 @@ Motion motion_of_motor(const Series& series,
   motion.rest_radps = std::max(noise_factor * speed_std_radps, least_share * motion.top_radps());
   motion.contact.assign(series.size(), 0);
   const std::size_t margin = samples_in(settle_s, series.step_s);
-  double pushed_rad = motor_rad.front();
+  double top_a = 0.0;
+  for (const double i : series.current_a) top_a = std::max(top_a, std::abs(i));
+  // Where the load may be: on either flank at the start, and while the motor brakes.
+  double lowest_rad = motor_rad.front() - 0.5 * gap_rad, highest_rad = lowest_rad + gap_rad;
+  const std::vector<bool> steps = steps_of_voltage(series);
   std::size_t bearing = 0;  // samples since the flank was reached
   for (std::size_t k = 0; k < series.size(); ++k) {
-    const double pushed =
-        std::clamp(pushed_rad, motor_rad[k] - 0.5 * gap_rad, motor_rad[k] + 0.5 * gap_rad);
-    const bool moves = std::abs(motion.speed_radps[k]) > motion.rest_radps;
-    const bool bears = (pushed - pushed_rad) * motion.speed_radps[k] > 0.0;
-    pushed_rad = pushed;
+    const double low = motor_rad[k] - 0.5 * gap_rad, high = motor_rad[k] + 0.5 * gap_rad;
+    const double speed = motion.speed_radps[k];
+    const bool moves = std::abs(speed) > motion.rest_radps;
+    const bool brakes =
+        moves && series.current_a[k] * (speed > 0.0 ? 1.0 : -1.0) < -braking_share * top_a;
+    const double lowest = brakes ? low : std::clamp(lowest_rad, low, high),
+                 highest = brakes ? high : std::clamp(highest_rad, low, high);
+    const bool bears = lowest == highest && (lowest - lowest_rad) * speed > 0.0 &&
+                       (highest - highest_rad) * speed > 0.0;
+    lowest_rad = lowest;
+    highest_rad = highest;
     bearing = moves && bears && !series.bridged[k] ? bearing + 1 : 0;
-    if (bearing > margin) motion.contact[k] = direction(motion.speed_radps[k], motion.rest_radps);
+    if (bearing > margin && !steps[k]) motion.contact[k] = direction(speed, motion.rest_radps);
   }
   shorten_runs(motion.contact, half + 1);
   return motion;

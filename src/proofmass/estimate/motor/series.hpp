@@ -79,7 +79,9 @@ void subtract_current_offset(const Motion& load, Series& series);
 /// Motion of the motor, `load_rad` the load's angle. The gear bears on a flank from settle_s after
 /// the motor has crossed the gap until the motor is at rest: the play operator of angle and gap (M.
 /// A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis (1989), section 1.2), where the
-/// load's own friction keeps it on the flank that drives it.
+/// load's own friction keeps it on the flank that drives it. While the motor brakes, its current
+/// against the motion, the load may lie anywhere in the gap; it bears again where the operators
+/// from both flanks agree. Samples near a step of the voltage do not count.
 [[nodiscard]] Motion motion_of_motor(const Series& series,
                                      const std::vector<double>& motor_rad,
                                      std::vector<double> load_rad,
