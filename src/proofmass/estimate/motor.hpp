@@ -78,10 +78,11 @@ struct MotorSolution {
 
 /// Identifies the drive by two linear regressions whose noise is white plus a random walk:
 ///
-///     θ = (1/K) ∫ (u − R i − Vb sgn i) dt − (L/K) i ∓ δ + errors of the angle,
+///     θ = (1/K) ∫ (u − R i − Vb tanh(i/s) − u0) dt − (L/K) i ∓ δ + errors of the angle,
 ///     J ω' = K i − b ω − (Tc + Fs exp(−(ω/ωs)²)) sgn ω − U cos(θ + φ) − T0, integrated once,
 ///
-/// with ω from the back-EMF. Only ωs is not linear: its likelihood is profiled.
+/// with ω from the back-EMF. Only s and ωs are not linear: the likelihood is maximised over them.
+/// What noise of the current does to the figures is found by repetition with more of it.
 ///
 /// - At rest, and in the gap of the gear, friction is unknown: those samples are not used. The
 ///   motor's angle is known through the gap, by which the backlash 2δ shows.

@@ -50,6 +50,7 @@ class Choice {
   std::optional<PoseSet> larger(const PoseSet& from, std::size_t size);
   std::optional<PoseSet> many(const PoseSet& from);
   std::vector<PoseSet> with_one_back(const PoseSet& out);
+  std::optional<PoseSet> without_weakest(const PoseSet& out);
   bool explained(const PoseSet& out);
 
   PoseHypotheses& hypotheses_;
@@ -123,6 +124,20 @@ std::vector<PoseSet> Choice::with_one_back(const PoseSet& out) {
   return sets;
 }
 
+// `out` without the member whose error is least significant, if it is not significant.
+std::optional<PoseSet> Choice::without_weakest(const PoseSet& out) {
+  double largest = 0.0;
+  std::optional<PoseSet> found;
+  for (PoseSet& others : with_one_back(out)) {
+    if (hypotheses_.without(others) == nullptr) continue;
+    const double p = chance(others, out, 0.0);
+    if (p <= largest) continue;
+    largest = p;
+    found = std::move(others);
+  }
+  return largest < suspect_p ? std::nullopt : found;
+}
+
 // More than two: the trimmed ones, without those that do not contradict the others after all.
 std::optional<PoseSet> Choice::many(const PoseSet& from) {
   const auto free = static_cast<std::size_t>(options_.free);
@@ -132,17 +147,9 @@ std::optional<PoseSet> Choice::many(const PoseSet& from) {
   PoseSet out = hypotheses_.trimmed(most);
   if (hypotheses_.without(out) == nullptr) return std::nullopt;
   while (out.size() > 2) {
-    double largest = 0.0;
-    PoseSet without_one;
-    for (PoseSet& others : with_one_back(out)) {
-      if (hypotheses_.without(others) == nullptr) continue;
-      const double p = chance(others, out, 0.0);
-      if (p <= largest) continue;
-      largest = p;
-      without_one = std::move(others);
-    }
-    if (largest < suspect_p || without_one.empty()) break;
-    out = std::move(without_one);
+    std::optional<PoseSet> others = without_weakest(out);
+    if (!others) break;
+    out = std::move(*others);
   }
   if (out.size() <= std::max<std::size_t>(2, from.size()) || chance(from, out, 0.0) >= suspect_p)
     return std::nullopt;

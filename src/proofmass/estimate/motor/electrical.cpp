@@ -135,9 +135,9 @@ void level_with(const Series& series, const Motion& motion, std::vector<double>&
   }
 }
 
-// The regression about a start.
-struct Problem {
-  Problem(const Series& series, const Motion& motion, const ElectricalStart& start)
+// The regression of the measured angle, linear about a start.
+struct AngleRegression {
+  AngleRegression(const Series& series, const Motion& motion, const ElectricalStart& start)
       : errors(series, motion), terms(terms_of(series, motion, start)) {
     const Index unknowns = first_error + errors.count();
     const auto used = static_cast<Index>(motion.contact.size()) -
@@ -180,9 +180,9 @@ ElectricalStart with_likely_knee(const Series& series,
   for (const double share : shares) {
     ElectricalStart tried = start;
     tried.brush_knee_a = share * largest(series.sampled_current_a);
-    const Problem problem(series, motion, tried);
-    if (!ratio) ratio = fit(problem.regression).ratio;
-    const LevelFit found = fit_at(problem.regression, *ratio);
+    const AngleRegression linear(series, motion, tried);
+    if (!ratio) ratio = fit(linear.regression).ratio;
+    const LevelFit found = fit_at(linear.regression, *ratio);
     tried.brush_drop_per_constant = found.value(brush_drop);
     if (found.cost < least) out = tried;
     least = std::min(least, found.cost);
@@ -192,7 +192,7 @@ ElectricalStart with_likely_knee(const Series& series,
 
 ElectricalFit concluded(const Series& series,
                         const Motion& motion,
-                        const Problem& problem,
+                        const AngleRegression& linear,
                         const LevelFit& found,
                         const ElectricalStart& start) {
   ElectricalFit out{
@@ -202,17 +202,17 @@ ElectricalFit concluded(const Series& series,
       .half_backlash_std_rad = std::sqrt(found.covariance(half_backlash, half_backlash)),
       .angle_noise_rad = found.white_std,
       .correlation = found.correlation,
-      .speed_terms = problem.terms.speed,
+      .speed_terms = linear.terms.speed,
       .next = {.resistance_per_constant = std::max(found.value(resistance), 0.0),
                .brush_drop_per_constant = found.value(brush_drop),
                .brush_knee_a = start.brush_knee_a}};
-  const VectorXd angle = problem.terms.angle * out.value;
+  const VectorXd angle = linear.terms.angle * out.value;
   for (std::size_t k = 0; k < series.size(); ++k)
     out.load_angle_rad.push_back(angle(static_cast<Index>(k)) -
                                  motion.contact[k] * out.half_backlash_rad);
   level_with(series, motion, out.load_angle_rad);
-  const std::vector<double>& time_s = problem.regression.time_s;
-  const std::vector<double> level = smoothed_level(problem.regression, found);
+  const std::vector<double>& time_s = linear.regression.time_s;
+  const std::vector<double> level = smoothed_level(linear.regression, found);
   for (std::size_t k = 0, last = 0; k < series.size(); ++k) {
     while (last + 1 < level.size() && time_s[last + 1] <= series.time_s(k)) ++last;
     const std::size_t next = std::min(last + 1, level.size() - 1);
@@ -252,16 +252,16 @@ ElectricalFit fit_electrical(const Series& series,
   constexpr double longest_step = 0.5, close = 0.02;  // of ln s
   std::optional<double> ratio;
   for (int step = 0; step < most_steps; ++step) {
-    const Problem problem(series, motion, at);
-    if (!ratio) ratio = fit(problem.regression).ratio;
-    const LevelFit found = fit_at(problem.regression, *ratio);
+    const AngleRegression linear(series, motion, at);
+    if (!ratio) ratio = fit(linear.regression).ratio;
+    const LevelFit found = fit_at(linear.regression, *ratio);
     const double change = std::clamp(found.value(brush_knee), -longest_step, longest_step);
     if (std::abs(change) < close) break;
     at.brush_drop_per_constant = found.value(brush_drop);
     at.brush_knee_a *= std::exp(change);
   }
-  const Problem problem(series, motion, at);
-  return concluded(series, motion, problem, fit(problem.regression), at);
+  const AngleRegression linear(series, motion, at);
+  return concluded(series, motion, linear, fit(linear.regression), at);
 }
 
 }  // namespace proofmass::estimate::motor

@@ -22,16 +22,17 @@ struct ElectricalStart {
   double brush_drop_per_constant = 0.0, brush_knee_a = 0.0;
 };
 
-/// The winding and the gear: from u = R i + L i' + Vb sgn i + K ω the motor's angle is
+/// The winding and the gear: from u = R i + L i' + Vb tanh(i/s) + u0 + K ω the motor's angle is
 ///
-///     θ_m = (1/K) ∫ (u − R i − Vb sgn i) dt − (L/K) i,
+///     θ_m = (1/K) ∫ (u − R i − Vb tanh(i/s) − u0) dt − (L/K) i,
 ///
 /// up to the random walk that the errors of voltage and current integrate to, and the angle
 /// measured at the load is
 ///
 ///     θ = θ_m ∓ δ − τ ω + up to four times per turn − r (ω² cos θ + ω' sin θ) / g + noise,
 ///
-/// linear in 1/K, R/K, L/K, Vb/K, half the backlash δ, the delay τ and the errors of the angle. The
+/// linear in 1/K, R/K, L/K, Vb/K, u0/K, half the backlash δ, the delay τ and the errors of the
+/// angle; Newton's steps find the current s over which the brushes' drop rises. The
 /// motor's angle is known through the gap of the gear, where the load rests, so that the change of
 /// flank shows the backlash.
 struct ElectricalFit {
@@ -42,7 +43,7 @@ struct ElectricalFit {
   double correlation = 0.0;
   /// The motor's speed is Σ value · terms; one column for each coefficient, a row for each sample.
   Eigen::MatrixXd speed_terms;
-  ElectricalStart next{};
+  ElectricalStart next{};  ///< for a fit to a similar motion
   std::vector<double> motor_angle_rad{};
   std::vector<double> load_angle_rad{};  ///< by the back-EMF alone, without the random walk
 };

@@ -26,8 +26,9 @@ MotorSpeed speed_by_back_emf(const Series& series, const ElectricalFit& electric
   return {smoothed(raw, series.step_s, window_s), slope_noise(half) * sample_noise(raw), half};
 }
 
-Error too_still() {
-  return {Errc::not_observable, "the load hardly moves: nothing shows the drive"};
+Status enough(const Motion& motion, const char* why_not) {
+  if (moving_samples(motion) >= least_moving) return Done{};
+  return Error{Errc::not_observable, why_not};
 }
 
 }  // namespace
@@ -44,7 +45,8 @@ Result<Identified> identify(const MotorRecord& record,
   if (!prepared) return prepared.error();
   Series series = std::move(prepared).value();
   Motion motion = motion_of_load(series);
-  if (moving_samples(motion) < least_moving) return too_still();
+  const Status moves = enough(motion, "the load hardly moves: nothing shows the drive");
+  if (!moves) return moves.error();
   if (!series.has_current()) {
     Result<MechanicalFit> mechanical = fit_without_current(series, motion);
     if (!mechanical) return mechanical.error();
@@ -63,7 +65,10 @@ Result<Identified> identify(const MotorRecord& record,
         std::max(electrical->half_backlash_rad + 2.0 * electrical->half_backlash_std_rad, 0.0);
     motion = motion_of_motor(series, electrical->motor_angle_rad, electrical->load_angle_rad,
                              std::move(speed.radps), speed.std_radps, gap_rad, speed.half_window);
-    if (moving_samples(motion) < least_moving) return too_still();
+    const Status bears = enough(motion,
+                                "the flank that the gear bears on is hardly ever known: "
+                                "change the voltage gradually, and brake gently");
+    if (!bears) return bears.error();
   }
   Result<MechanicalFit> mechanical = fit_with_current(series, motion, *electrical);
   if (!mechanical) return mechanical.error();
