@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "proofmass/core/number_words.hpp"
 #include "proofmass/estimate/motor/conclude.hpp"
 #include "proofmass/estimate/motor/screening.hpp"
 
@@ -33,6 +34,14 @@ MotorSeries series_of(const Series& series,
   return out;
 }
 
+void note_offset(const Series& series, std::vector<Note>& notes) {
+  constexpr double least_share = 0.02;  // of the largest current
+  const double top_a = motor::largest_magnitude(series.current_a);
+  if (!(std::abs(series.current_offset_a) > least_share * top_a)) return;
+  notes.push_back({Severity::warning, "current: " + significant(series.current_offset_a, 2) +
+                                          " A at rest without a voltage are subtracted"});
+}
+
 }  // namespace
 
 const MotorParameter* MotorSolution::find(std::string_view name) const {
@@ -48,6 +57,7 @@ Result<MotorSolution> estimate_motor(const MotorRecord& record, const MotorOptio
   if (!found) return found.error();
   const Series& series = found->series;
   const Motion& motion = found->motion;
+  note_offset(series, notes);
   const motor::Findings findings(*found, motor::current_errors(used, options, *found));
   MotorSolution out{.notes = std::move(notes)};
   out.parameters = findings.parameters();

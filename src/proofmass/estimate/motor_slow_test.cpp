@@ -52,28 +52,37 @@ struct Count {
 
 enum class Recorded { current, no_current, encoder, noisy_current };
 
+struct Drawn {
+  TrueDrive drive;
+  MotorRecord record;
+};
+
+Drawn recorded_drive(std::uint64_t seed, Recorded recorded) {
+  TrueDrive drive = drawn(seed);
+  motor_test::TrueMeasurement how;
+  if (recorded == Recorded::encoder || recorded == Recorded::noisy_current) {
+    how.sensors = 0;
+    how.encoder_counts = 4096.0;
+  }
+  if (recorded == Recorded::noisy_current) {
+    std::mt19937_64 engine(2000 + seed);
+    std::uniform_real_distribution<double> share;
+    drive.brush_drop = share(engine);
+    drive.brush_knee = std::exp(std::log(0.003) + std::log(10.0) * share(engine));
+    how.current_noise = 0.01;
+    how.current_offset = 0.06 * share(engine) - 0.03;
+  }
+  const motor_test::Voltage voltage =
+      recorded == Recorded::noisy_current ? motor_test::with_rests : motor_test::exploring;
+  Drawn out{drive, motor_test::simulated(drive, how, voltage, seed)};
+  if (recorded == Recorded::no_current) out.record.current_a.clear();
+  return out;
+}
+
 std::map<std::string, Count> coverage(int runs, Recorded recorded) {
   std::map<std::string, Count> counts;
   for (int run = 1; run <= runs; ++run) {
-    const auto seed = static_cast<std::uint64_t>(run);
-    TrueDrive drive = drawn(seed);
-    motor_test::TrueMeasurement how;
-    if (recorded == Recorded::noisy_current) {
-      std::mt19937_64 engine(2000 + seed);
-      std::uniform_real_distribution<double> share;
-      drive.brush_drop = share(engine);
-      drive.brush_knee = std::exp(std::log(0.003) + std::log(10.0) * share(engine));
-      how.current_noise = 0.01;
-      how.current_offset = 0.06 * share(engine) - 0.03;
-    }
-    if (recorded == Recorded::encoder || recorded == Recorded::noisy_current) {
-      how.sensors = 0;
-      how.encoder_counts = 4096.0;
-    }
-    MotorRecord record = motor_test::simulated(
-        drive, how,
-        recorded == Recorded::noisy_current ? motor_test::with_rests : motor_test::exploring, seed);
-    if (recorded == Recorded::no_current) record.current_a.clear();
+    const auto [drive, record] = recorded_drive(static_cast<std::uint64_t>(run), recorded);
     const MotorSolution found = estimate_motor(record).value();
     const auto truth = truth_of(drive);
     for (const MotorParameter& one : found.parameters) {

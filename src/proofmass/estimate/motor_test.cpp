@@ -85,6 +85,9 @@ TEST(Motor, AnOffsetOfTheCurrentDoesNotMatter) {
     ASSERT_TRUE(same->value) << one.name;
     EXPECT_NEAR(same->value->value, one.value->value, 0.3 * one.value->std) << one.name;
   }
+  ASSERT_EQ(with_offset.notes.size(), found.notes.size() + 1);
+  EXPECT_EQ(with_offset.notes.back().text,
+            "current: 0.040 A at rest without a voltage are subtracted");
 }
 
 // Noise of the current attenuates what multiplies it: resistance and inertia were up to four

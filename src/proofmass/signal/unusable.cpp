@@ -203,17 +203,25 @@ struct Saturated {
   std::string ends;
 };
 
+// Channels that change when one does: those beside it, and the witnesses.
+std::vector<View<double>> beside(std::size_t channel,
+                                 std::vector<std::size_t> channels,
+                                 const std::vector<std::size_t>& witnesses,
+                                 const Recording& recording) {
+  std::erase(channels, channel);
+  channels.insert(channels.end(), witnesses.begin(), witnesses.end());
+  std::vector<View<double>> out;
+  for (const std::size_t other : channels) out.emplace_back(recording.channels[other].values);
+  return out;
+}
+
 std::vector<Saturated> saturated(const std::vector<std::size_t>& channels,
                                  const Recording& recording,
                                  const std::vector<std::size_t>& witnesses = {}) {
   std::vector<Saturated> out;
   for (const std::size_t c : channels) {
-    std::vector<View<double>> others;
-    for (const std::size_t other : witnesses) others.emplace_back(recording.channels[other].values);
-    for (const std::size_t other : channels)
-      if (other != c) others.emplace_back(recording.channels[other].values);
     const Channel& channel = recording.channels[c];
-    const RangeEnds ends = range_ends(channel, others);
+    const RangeEnds ends = range_ends(channel, beside(c, channels, witnesses, recording));
     Saturated& one = out.emplace_back();
     if (!ends.reached()) continue;
     one.ends = in_words(ends, channel.unit);

@@ -20,12 +20,6 @@ using Eigen::VectorXd;
 // Order of the unknowns after those of Electrical.
 constexpr Index half_backlash = electrical_count, first_error = half_backlash + 1;
 
-double largest(const std::vector<double>& values) {
-  double out = 0.0;
-  for (const double v : values) out = std::max(out, std::abs(v));
-  return out;
-}
-
 // Brushes drop their voltage with the sign of the current, smoothly through zero: Vb tanh(i/s),
 // with its derivative by ln s. The current is not smoothed first, which would not be linear.
 struct BrushTerms {
@@ -53,7 +47,7 @@ struct Terms {
 // motor coasts.
 std::vector<bool> standing(const Series& series, const Motion& motion) {
   constexpr double share = 0.05, coasting_s = 0.05;  // of the largest current
-  const double least_a = share * largest(series.current_a);
+  const double least_a = share * largest_magnitude(series.current_a);
   std::vector<bool> stands;
   double since_s = 0.0;
   for (std::size_t k = 0; k < series.size(); ++k) {
@@ -107,7 +101,8 @@ void set_priors(const Series& series,
                 const ElectricalStart& start,
                 LevelRegression& regression) {
   constexpr double anything = 1e3, inductance_s = 0.005, drop_share = 0.02, offset_share = 0.005;
-  const double top_v = largest(series.voltage_v), top_a = largest(series.current_a);
+  const double top_v = largest_magnitude(series.voltage_v),
+               top_a = largest_magnitude(series.current_a);
   const double constant = motion.top_radps() / top_v;  // at least 1/K
   VectorXd& std = regression.prior_std;
   std(per_constant) = anything * constant;
@@ -179,7 +174,7 @@ ElectricalStart with_likely_knee(const Series& series,
   double least = std::numeric_limits<double>::infinity();
   for (const double share : shares) {
     ElectricalStart tried = start;
-    tried.brush_knee_a = share * largest(series.sampled_current_a);
+    tried.brush_knee_a = share * largest_magnitude(series.sampled_current_a);
     const AngleRegression linear(series, motion, tried);
     if (!ratio) ratio = fit(linear.regression).ratio;
     const LevelFit found = fit_at(linear.regression, *ratio);

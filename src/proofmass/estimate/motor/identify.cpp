@@ -11,12 +11,6 @@ namespace {
 constexpr int rounds = 3;
 constexpr std::size_t least_moving = 100;
 
-struct MotorSpeed {
-  std::vector<double> radps;
-  double std_radps = 0.0;
-  std::size_t half_window = 0;
-};
-
 /// The motor's speed by its back-EMF, through the local cubic over 25 ms.
 MotorSpeed speed_by_back_emf(const Series& series, const ElectricalFit& electrical) {
   constexpr double window_s = 0.025;
@@ -59,12 +53,11 @@ Result<Identified> identify(const MotorRecord& record,
   for (int round = 0; round < rounds; ++round) {
     electrical = fit_electrical(series, motion, start);
     start = electrical->next;
-    MotorSpeed speed = speed_by_back_emf(series, *electrical);
     const double gap_rad =
         2.0 *
         std::max(electrical->half_backlash_rad + 2.0 * electrical->half_backlash_std_rad, 0.0);
     motion = motion_of_motor(series, electrical->motor_angle_rad, electrical->load_angle_rad,
-                             std::move(speed.radps), speed.std_radps, gap_rad, speed.half_window);
+                             speed_by_back_emf(series, *electrical), gap_rad);
     const Status bears = enough(motion,
                                 "the flank that the gear bears on is hardly ever known: "
                                 "change the voltage gradually, and brake gently");

@@ -53,8 +53,7 @@ std::size_t samples_in(double duration_s, double step_s) {
 // supply.
 std::vector<bool> steps_of_voltage(const Series& series) {
   constexpr double step_share = 0.1, over_s = 0.02, around_s = 0.05, most = 0.5;
-  double top_v = 0.0;
-  for (const double u : series.voltage_v) top_v = std::max(top_v, std::abs(u));
+  const double top_v = largest_magnitude(series.voltage_v);
   const std::size_t n = series.size(), over = samples_in(over_s, series.step_s),
                     around = samples_in(around_s, series.step_s);
   std::vector<bool> out(n, false);
@@ -71,6 +70,39 @@ std::int8_t direction(double speed_radps, double least_radps) {
   if (!(std::abs(speed_radps) > least_radps)) return 0;
   return speed_radps > 0.0 ? std::int8_t{1} : std::int8_t{-1};
 }
+
+// Where the current opposes the motion.
+std::vector<bool> where_it_brakes(const Series& series, const Motion& motion) {
+  const double least_a = braking_share * largest_magnitude(series.current_a);
+  std::vector<bool> out;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const std::int8_t towards = direction(motion.speed_radps[k], motion.rest_radps);
+    out.push_back(series.current_a[k] * towards < -least_a);
+  }
+  return out;
+}
+
+// Where the load may lie in the gap: between the play operators that start from both flanks.
+class PossibleLoad {
+ public:
+  PossibleLoad(double motor_rad, double gap_rad)
+      : half_(0.5 * gap_rad), low_(motor_rad - half_), high_(motor_rad + half_) {}
+
+  /// The next angle of the motor: +1 or −1 if it pushes a load whose place is known forwards or
+  /// backwards, else 0.
+  int follow(double motor_rad, bool brakes) {
+    const double low = motor_rad - half_, high = motor_rad + half_;
+    const double last_low = low_, last_high = high_;
+    low_ = brakes ? low : std::clamp(last_low, low, high);
+    high_ = brakes ? high : std::clamp(last_high, low, high);
+    if (low_ != high_) return 0;
+    return (low_ > last_low && high_ > last_high ? 1 : 0) -
+           (low_ < last_low && high_ < last_high ? 1 : 0);
+  }
+
+ private:
+  double half_, low_, high_;
+};
 
 }  // namespace
 
@@ -96,6 +128,12 @@ double Motion::top_radps() const {
   std::vector<double> sizes;
   for (const double w : speed_radps) sizes.push_back(std::abs(w));
   return quantile(sizes, share).value_or(0.0);
+}
+
+double largest_magnitude(const std::vector<double>& values) {
+  double out = 0.0;
+  for (const double v : values) out = std::max(out, std::abs(v));
+  return out;
 }
 
 double sample_noise(const std::vector<double>& values) {
@@ -163,8 +201,7 @@ Motion motion_of_load(const Series& series) {
 
 void subtract_current_offset(const Motion& load, Series& series) {
   constexpr double least_s = 0.5, no_voltage_share = 0.01, settled_s = 0.1;
-  double top_v = 0.0;
-  for (const double u : series.voltage_v) top_v = std::max(top_v, std::abs(u));
+  const double top_v = largest_magnitude(series.voltage_v);
   std::vector<double> at_rest;
   double since_s = 0.0;
   for (std::size_t k = 0; k < series.size(); ++k) {
@@ -183,37 +220,25 @@ void subtract_current_offset(const Motion& load, Series& series) {
 Motion motion_of_motor(const Series& series,
                        const std::vector<double>& motor_rad,
                        std::vector<double> load_rad,
-                       std::vector<double> speed_radps,
-                       double speed_std_radps,
-                       double gap_rad,
-                       std::size_t half) {
-  Motion motion{
-      .speed_radps = std::move(speed_radps), .angle_rad = std::move(load_rad), .half_window = half};
-  motion.rest_radps = std::max(noise_factor * speed_std_radps, least_share * motion.top_radps());
+                       MotorSpeed speed,
+                       double gap_rad) {
+  Motion motion{.speed_radps = std::move(speed.radps),
+                .angle_rad = std::move(load_rad),
+                .half_window = speed.half_window};
+  motion.rest_radps = std::max(noise_factor * speed.std_radps, least_share * motion.top_radps());
   motion.contact.assign(series.size(), 0);
   const std::size_t margin = samples_in(settle_s, series.step_s);
-  double top_a = 0.0;
-  for (const double i : series.current_a) top_a = std::max(top_a, std::abs(i));
-  // Where the load may be: on either flank at the start, and while the motor brakes.
-  double lowest_rad = motor_rad.front() - 0.5 * gap_rad, highest_rad = lowest_rad + gap_rad;
-  const std::vector<bool> steps = steps_of_voltage(series);
+  const std::vector<bool> braking = where_it_brakes(series, motion),
+                          steps = steps_of_voltage(series);
+  PossibleLoad load(motor_rad.front(), gap_rad);
   std::size_t bearing = 0;  // samples since the flank was reached
   for (std::size_t k = 0; k < series.size(); ++k) {
-    const double low = motor_rad[k] - 0.5 * gap_rad, high = motor_rad[k] + 0.5 * gap_rad;
-    const double speed = motion.speed_radps[k];
-    const bool moves = std::abs(speed) > motion.rest_radps;
-    const bool brakes =
-        moves && series.current_a[k] * (speed > 0.0 ? 1.0 : -1.0) < -braking_share * top_a;
-    const double lowest = brakes ? low : std::clamp(lowest_rad, low, high),
-                 highest = brakes ? high : std::clamp(highest_rad, low, high);
-    const bool bears = lowest == highest && (lowest - lowest_rad) * speed > 0.0 &&
-                       (highest - highest_rad) * speed > 0.0;
-    lowest_rad = lowest;
-    highest_rad = highest;
-    bearing = moves && bears && !series.bridged[k] ? bearing + 1 : 0;
-    if (bearing > margin && !steps[k]) motion.contact[k] = direction(speed, motion.rest_radps);
+    const std::int8_t towards = direction(motion.speed_radps[k], motion.rest_radps);
+    const int pushed = load.follow(motor_rad[k], braking[k]);
+    bearing = towards != 0 && pushed == towards && !series.bridged[k] ? bearing + 1 : 0;
+    if (bearing > margin && !steps[k]) motion.contact[k] = towards;
   }
-  shorten_runs(motion.contact, half + 1);
+  shorten_runs(motion.contact, speed.half_window + 1);
   return motion;
 }
 

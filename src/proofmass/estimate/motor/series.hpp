@@ -10,10 +10,10 @@ namespace proofmass::estimate::motor {
 struct Series {
   double step_s = 0.0;
   std::vector<double> voltage_v;
-  std::vector<double> current_a;  ///< smoothed() over 50 ms; empty: not measured
-  std::vector<double> sampled_current_a{};
-  double current_offset_a = 0.0;  ///< subtracted from both
-  std::vector<double> angle_rad;  ///< of the load, unwrapped, positive with the voltage
+  std::vector<double> current_a;            ///< smoothed() over 50 ms; empty: not measured
+  std::vector<double> sampled_current_a{};  ///< the same, not smoothed
+  double current_offset_a = 0.0;            ///< subtracted from both
+  std::vector<double> angle_rad;            ///< of the load, unwrapped, positive with the voltage
   /// Whether a sample is interpolated over a gap of the recording, of unknown motion.
   std::vector<bool> bridged;
   bool from_gravity = false;  ///< the angle comes from accelerometers
@@ -41,6 +41,8 @@ struct Motion {
   /// Speed that 1 % of the samples exceed.
   [[nodiscard]] double top_radps() const;
 };
+
+[[nodiscard]] double largest_magnitude(const std::vector<double>& values);
 
 /// Standard deviation of the white noise of one sample, from the third differences, which are small
 /// for a smooth motion.
@@ -76,6 +78,13 @@ void shorten_runs(std::vector<std::int8_t>& contact, std::size_t margin);
 /// does for half a second in all.
 void subtract_current_offset(const Motion& load, Series& series);
 
+/// The motor's speed, by its back-EMF.
+struct MotorSpeed {
+  std::vector<double> radps;
+  double std_radps = 0.0;
+  std::size_t half_window = 0;
+};
+
 /// Motion of the motor, `load_rad` the load's angle. The gear bears on a flank from settle_s after
 /// the motor has crossed the gap until the motor is at rest: the play operator of angle and gap (M.
 /// A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis (1989), section 1.2), where the
@@ -85,9 +94,7 @@ void subtract_current_offset(const Motion& load, Series& series);
 [[nodiscard]] Motion motion_of_motor(const Series& series,
                                      const std::vector<double>& motor_rad,
                                      std::vector<double> load_rad,
-                                     std::vector<double> speed_radps,
-                                     double speed_std_radps,
-                                     double gap_rad,
-                                     std::size_t half_window);
+                                     MotorSpeed speed,
+                                     double gap_rad);
 
 }  // namespace proofmass::estimate::motor
